@@ -1,0 +1,22 @@
+#pragma once
+// Lat-long (equirectangular) images, as three.js reads them:
+//
+//        u = 0.5 + atan2(z, x) / 2pi          u=0        u=0.5       u=1
+//        v = acos(y) / pi                 v=0  +--- +Y (all of the row) ---+
+//                                              |  -X    -Z    +X    +Z  -X |
+//        top row = +Y                     v=1  +--- -Y --------------------+
+#include "common/scene/image.h"
+#include "common/types.h"
+
+namespace kokage {
+
+/// Texture coordinates of a unit direction, u in [0,1), v in [0,1].
+glm::vec2 lat_long_from_direction(const glm::vec3& direction);
+/// Unit direction of texture coordinates.
+glm::vec3 direction_from_lat_long(glm::vec2 uv);
+/// Exact solid angle in sr of every pixel of row y: (2pi/width) (cos(theta_top) - cos(theta_bottom)).
+double pixel_solid_angle(int y, int width, int height);
+/// Bilinear lookup, wrapping in u and clamping at the poles. The image has at least 3 channels.
+glm::vec3 lat_long_radiance(const Image& image, const glm::vec3& direction);
+
+} // namespace kokage

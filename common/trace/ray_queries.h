@@ -1,0 +1,38 @@
+#pragma once
+// First hits and occlusion on a PatchScene, by Embree, with alpha masks tested at every candidate hit.
+#include "common/scene/patch_scene.h"
+
+#include <memory>
+
+namespace kokage {
+
+struct RayHit {
+    float distance = 0;
+    std::uint32_t triangle = 0;
+    glm::vec2 barycentric{0.f};      ///< weights of the triangle's corners 1 and 2
+    glm::vec3 geometric_normal{0.f}; ///< unit, counter-clockwise side
+    bool ground = false;             ///< the scene's ground plane was hit (triangle is then undefined)
+};
+
+/// Embree's acceleration structure over a scene (which must outlive it). Thread-safe once built. The scene may be empty.
+class RayQueries {
+  public:
+    explicit RayQueries(const PatchScene& scene);
+    ~RayQueries();
+    RayQueries(RayQueries&&) noexcept;
+    RayQueries& operator=(RayQueries&&) noexcept;
+
+    /// Nearest hit in (near, far); false if none. The ground plane is tested exactly, outside Embree.
+    bool first_hit(const glm::vec3& origin, const glm::vec3& direction, float near, float far, RayHit& hit) const;
+    /// True if anything solid lies in (near, far).
+    bool occluded(const glm::vec3& origin, const glm::vec3& direction, float near, float far) const;
+    /// A distance below which a hit is taken for the surface that a ray left: scaled to the scene's size and place.
+    float ray_offset() const;
+    const PatchScene& scene() const;
+
+  private:
+    struct Implementation;
+    std::unique_ptr<Implementation> implementation_;
+};
+
+} // namespace kokage

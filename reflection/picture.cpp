@@ -1,0 +1,1 @@
+#include "reflection/picture.h"

@@ -1,0 +1,1 @@
+#include "tests/benchmark/foliage_benchmark.h"

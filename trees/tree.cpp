@@ -1,0 +1,1 @@
+#include "trees/tree.h"
