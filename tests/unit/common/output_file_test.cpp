@@ -1,0 +1,116 @@
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <sstream>
+#include <unistd.h>
+
+namespace fs = std::filesystem;
+using namespace kokage;
+
+namespace {
+
+class OutputFileTest : public ::testing::Test {
+  protected:
+    void SetUp() override {
+        std::string pattern = (fs::temp_directory_path() / "kokage-output-file-XXXXXX").string();
+        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
+        folder = pattern;
+    }
+    void TearDown() override { fs::remove_all(folder); }
+    std::size_t files() const {
+        return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
+    }
+    static std::string contents(const fs::path& path) {
+        std::ifstream in(path, std::ios::binary);
+        std::stringstream text;
+        text << in.rdbuf();
+        return text.str();
+    }
+    fs::path folder;
+};
+
+TEST_F(OutputFileTest, AppearsWholeOnCommitAndNotBefore) {
+    OutputFile file(folder / "a.txt");
+    file.write("half");
+    EXPECT_FALSE(fs::exists(folder / "a.txt"));
+    EXPECT_EQ(file.temporary_path().extension(), ".txt");
+    EXPECT_EQ(file.temporary_path().parent_path(), folder);
+    file.write(" whole");
+    file.commit();
+    EXPECT_EQ(contents(folder / "a.txt"), "half whole");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(OutputFileTest, LeavesWhatWasThereWhenStopped) {
+    write_file(folder / "a.txt", "before");
+    try {
+        OutputFile file(folder / "a.txt");
+        file.write("after");
+        throw Stopped();
+    } catch (const Stopped&) {
+    }
+    EXPECT_EQ(contents(folder / "a.txt"), "before");
+    EXPECT_EQ(files(), 1u);
+}
+
+TEST_F(OutputFileTest, ReplacesAndKeepsPermissions) {
+    write_file(folder / "a.txt", "before");
+    fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
+    write_file(folder / "a.txt", "after");
+    EXPECT_EQ(contents(folder / "a.txt"), "after");
+    EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+TEST_F(OutputFileTest, FollowsLinks) {
+    write_file(folder / "real.txt", "before");
+    fs::create_symlink("real.txt", folder / "link.txt");
+    write_file(folder / "link.txt", "after");
+    EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
+    EXPECT_EQ(contents(folder / "real.txt"), "after");
+    EXPECT_EQ(files(), 2u);
+}
+
+TEST_F(OutputFileTest, WritesToDevicesWithoutReplacingThem) {
+    write_file("/dev/null", "nothing");
+    EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+TEST_F(OutputFileTest, TwoWritersOfOnePathDoNotDisturbEachOther) {
+    OutputFile first(folder / "a.txt"), second(folder / "a.txt");
+    first.write("first");
+    second.write("second");
+    first.commit();
+    second.commit();
+    EXPECT_EQ(contents(folder / "a.txt"), "second");
+}
+
+TEST_F(OutputFileTest, RefusesFoldersAndMissingFolders) {
+    for (const fs::path& path : {folder, folder / "", folder / "missing" / "a.txt", fs::path()})
+        try {
+            OutputFile file(path);
+            ADD_FAILURE() << "accepted '" << path << "'";
+        } catch (const InputError& error) {
+            EXPECT_NE(std::string(error.what()).find("cannot write '" + path.string()), std::string::npos)
+                << error.what();
+        }
+    EXPECT_EQ(files(), 0u);
+}
+
+TEST_F(OutputFileTest, SaysWhenTheDiskIsFull) {
+    if (!fs::exists("/dev/full"))
+        GTEST_SKIP() << "skipped: no /dev/full here";
+    EXPECT_THROW(write_file("/dev/full", std::string(100000, 'x')), InputError);
+}
+
+TEST_F(OutputFileTest, RelativeNamesGoToTheCurrentFolder) {
+    const fs::path before = fs::current_path();
+    fs::current_path(folder);
+    write_file("a.txt", "here");
+    fs::current_path(before);
+    EXPECT_EQ(contents(folder / "a.txt"), "here");
+}
+
+} // namespace
