@@ -1,1 +1,5 @@
-int main() { return 0; }
+#include "viewer/command.h"
+
+int main(int argc, char** argv) {
+    return kokage::run_program(argc, argv);
+}

@@ -1,0 +1,103 @@
+#pragma once
+// Runs the program `kokage` as a user would, and folders to run it in.
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <gtest/gtest.h>
+#include <iterator>
+#include <string>
+#include <sys/wait.h>
+#include <thread>
+#include <unistd.h>
+#include <vector>
+
+namespace kokage {
+
+/// A new folder, removed with all in it when the test ends.
+class TemporaryFolder {
+  public:
+    TemporaryFolder() {
+        std::string name = (std::filesystem::temp_directory_path() / "kokage-test-XXXXXX").string();
+        if (!mkdtemp(name.data()))
+            throw std::runtime_error("no temporary folder can be made at " + name);
+        path_ = name;
+    }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path_, ignored);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    const std::filesystem::path& path() const { return path_; }
+    std::filesystem::path operator/(const std::filesystem::path& name) const { return path_ / name; }
+    /// Names of all files, hidden ones too, sorted.
+    std::vector<std::string> files() const {
+        std::vector<std::string> names;
+        for (const auto& entry : std::filesystem::directory_iterator(path_))
+            names.push_back(entry.path().filename().string());
+        std::sort(names.begin(), names.end());
+        return names;
+    }
+
+  private:
+    std::filesystem::path path_;
+};
+
+inline std::string read_text(const std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(file), {}};
+}
+
+struct ProgramRun {
+    int status = -1; ///< exit status; 128 + signal if a signal ended it
+    std::string output, errors;
+};
+
+struct ProgramRunOptions {
+    double interrupt_after_seconds = 0; ///< > 0: SIGINT is sent then
+};
+
+/// Runs `kokage` with arguments in a folder and waits for it.
+inline ProgramRun run_kokage(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                             const ProgramRunOptions& options = {}) {
+    TemporaryFolder streams;
+    const std::string output = (streams / "output").string(), errors = (streams / "errors").string();
+    std::vector<std::string> words{KOKAGE_PROGRAM};
+    words.insert(words.end(), arguments.begin(), arguments.end());
+    std::vector<char*> argv;
+    for (std::string& word : words)
+        argv.push_back(word.data());
+    argv.push_back(nullptr);
+    const pid_t child = fork();
+    if (child == 0) {
+        if (chdir(folder.c_str()) != 0 || !freopen(output.c_str(), "w", stdout) ||
+            !freopen(errors.c_str(), "w", stderr) || !freopen("/dev/null", "r", stdin))
+            _exit(126);
+        execv(argv[0], argv.data());
+        _exit(127);
+    }
+    if (options.interrupt_after_seconds > 0) {
+        std::this_thread::sleep_for(std::chrono::duration<double>(options.interrupt_after_seconds));
+        kill(child, SIGINT);
+    }
+    int state = 0;
+    while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
+    }
+    ProgramRun run;
+    run.status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    run.output = read_text(output);
+    run.errors = read_text(errors);
+    return run;
+}
+
+/// True for exactly one line that begins as all of the program's complaints do.
+inline testing::AssertionResult is_one_complaint(const std::string& errors) {
+    if (errors.rfind("kokage: ", 0) == 0 && errors.find('\n') == errors.size() - 1)
+        return testing::AssertionSuccess();
+    return testing::AssertionFailure() << "not one line that begins with 'kokage: ': " << errors;
+}
+
+} // namespace kokage

@@ -1,0 +1,34 @@
+// The program's first contact: help, version, mistakes on the command line.
+#include "tests/support/program_run.h"
+
+namespace kokage {
+namespace {
+
+TEST(CommandLine, BareProgramShowsHelp) {
+    TemporaryFolder folder;
+    const ProgramRun bare = run_kokage({}, folder.path());
+    const ProgramRun help = run_kokage({"--help"}, folder.path());
+    EXPECT_EQ(bare.status, 0);
+    EXPECT_EQ(help.status, 0);
+    EXPECT_EQ(bare.output, help.output);
+    EXPECT_NE(help.output.find("kokage COMMAND --help"), std::string::npos);
+    EXPECT_TRUE(help.errors.empty());
+}
+
+TEST(CommandLine, VersionIsOneLine) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage({"--version"}, folder.path());
+    EXPECT_EQ(run.status, 0);
+    EXPECT_EQ(run.output.rfind("kokage ", 0), 0u);
+}
+
+TEST(CommandLine, UnknownCommandIsNamed) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage({"prune"}, folder.path());
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_complaint(run.errors));
+    EXPECT_NE(run.errors.find("prune"), std::string::npos);
+}
+
+} // namespace
+} // namespace kokage

@@ -1,0 +1,28 @@
+#pragma once
+// The subcommands of `kokage`: one function each, one file each.
+#include "common/services/progress.h"
+
+#include <CLI/CLI.hpp>
+#include <functional>
+
+namespace kokage {
+
+/// What every command is told beside its own options.
+struct CommandContext {
+    bool quiet = false; ///< no progress, no summary: errors and what was asked for alone
+    Progress* progress = nullptr;
+};
+
+/// A subcommand: `app` holds its options, `run` does the work. Throws InputError, Stopped.
+struct Command {
+    CLI::App* app = nullptr;
+    std::function<void(const CommandContext&)> run;
+};
+
+/// All that are built, in the order in which one uses them.
+std::vector<Command> all_commands(CLI::App& program);
+
+/// The program from its arguments to its exit status: 0; 1 internal error; 2 the user's input; 130 stopped by the user.
+int run_program(int argc, const char* const* argv);
+
+} // namespace kokage

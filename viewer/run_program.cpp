@@ -1,0 +1,81 @@
+#include "common/services/error.h"
+#include "common/services/parallel.h"
+#include "viewer/command.h"
+#include "viewer/stop_signal.h"
+#include "viewer/terminal_progress.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+#include <new>
+
+namespace kokage {
+namespace {
+
+constexpr int kInternalError = 1, kInputError = 2, kStopped = 130;
+
+int complain(std::string message, int status) {
+    // One line, whatever a library put into its message.
+    std::replace(message.begin(), message.end(), '\n', ' ');
+    std::fprintf(stderr, "kokage: %s\n", message.c_str());
+    return status;
+}
+
+int run_command(const Command& command, bool quiet, int threads) {
+    set_thread_count(threads);
+    watch_stop_signals();
+    TerminalProgress progress(!quiet && stderr_is_terminal());
+    try {
+        command.run({.quiet = quiet, .progress = &progress});
+        std::cout.flush();
+        return std::cout ? 0 : complain("the output could not be written (is the disk full?)", kInternalError);
+    } catch (const Stopped&) {
+        progress.clear();
+        return complain("stopped; nothing was written", kStopped);
+    } catch (const InputError& error) {
+        progress.clear();
+        return complain(error.what(), kInputError);
+    } catch (const std::bad_alloc&) {
+        progress.clear();
+        return complain("not enough memory", kInternalError);
+    } catch (const std::exception& error) {
+        progress.clear();
+        return complain(std::string("internal error: ") + error.what(), kInternalError);
+    }
+}
+
+} // namespace
+
+int run_program(int argc, const char* const* argv) {
+    CLI::App program("Fast, accurate shading of trees: the light on every leaf, from the crown's edge to its core.",
+                     "kokage");
+    program.set_version_flag("--version", "kokage " KOKAGE_VERSION);
+    program.footer("'kokage COMMAND --help' tells a command's options.");
+    program.get_formatter()->column_width(34);
+    const std::vector<Command> commands = all_commands(program);
+    bool quiet = false;
+    int threads = 0;
+    for (const Command& command : commands) {
+        command.app->add_flag("--quiet", quiet, "Print no progress and no summary")->group("General");
+        command.app->add_option("--threads", threads, "Threads to use; 0 = as many as the machine has")
+            ->check(CLI::Range(0, 4096))
+            ->type_name("N")
+            ->capture_default_str()
+            ->group("General");
+    }
+    program.require_subcommand(0, 1);
+    try {
+        program.parse(argc, argv);
+    } catch (const CLI::Success& help) {
+        return program.exit(help);
+    } catch (const CLI::ParseError& error) {
+        return complain(std::string(error.what()) + " ('kokage --help' tells more)", kInputError);
+    }
+    for (const Command& command : commands)
+        if (command.app->parsed())
+            return run_command(command, quiet, threads);
+    std::cout << program.help();
+    return 0;
+}
+
+} // namespace kokage

@@ -1,0 +1,21 @@
+#pragma once
+// Ctrl-C (SIGINT), SIGTERM and a closed terminal (SIGHUP) ask the work to stop; it stops at its next look at
+// stop_requested().
+
+namespace kokage {
+
+/// From now on the signals set a flag. A second one ends the program at once, unless files are being written.
+void watch_stop_signals();
+/// True once a signal has come.
+bool stop_signal_received();
+
+/// While one lives, a second signal doesn't end the program, so that no temporary file is left behind.
+class WritingFiles {
+  public:
+    WritingFiles();
+    ~WritingFiles();
+    WritingFiles(const WritingFiles&) = delete;
+    WritingFiles& operator=(const WritingFiles&) = delete;
+};
+
+} // namespace kokage
