@@ -14,7 +14,9 @@ struct RayHit {
     bool ground = false;             ///< the scene's ground plane was hit (triangle is then undefined)
 };
 
-/// Embree's acceleration structure over a scene (which must outlive it). Thread-safe once built. The scene may be empty.
+/// Embree's acceleration structure over a scene (which must outlive it). Thread-safe once built. The scene may be
+/// empty. Triangles without area are left out: no ray hits them. Any scale works: 1e-6 m and 1e6 m trees give the same
+/// hits.
 class RayQueries {
   public:
     explicit RayQueries(const PatchScene& scene);
@@ -29,9 +31,12 @@ class RayQueries {
     /// A distance below which a hit is taken for the surface that a ray left: scaled to the scene's size and place.
     float ray_offset() const;
     const PatchScene& scene() const;
+    /// Memory that the acceleration structure holds.
+    std::size_t bytes() const;
+
+    struct Implementation; ///< Embree's side of it; opaque
 
   private:
-    struct Implementation;
     std::unique_ptr<Implementation> implementation_;
 };
 
