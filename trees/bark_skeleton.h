@@ -1,0 +1,36 @@
+#pragma once
+// The branching of a foreign tree, inferred from its bark mesh. Private to trees.
+#include "trees/tree.h"
+
+#include <span>
+
+namespace kokage {
+
+/// Points along a skeleton's axes, dense enough that the nearest one tells the branch, its place and its radius.
+struct AxisSamples {
+    struct Sample {
+        glm::vec3 position;
+        float radius_m;
+        std::uint32_t branch;
+    };
+    std::vector<Sample> samples;
+};
+
+/// `first_branch`: samples of branches before it are left out.
+AxisSamples sample_axes(const Skeleton& skeleton, std::size_t first_branch = 0);
+
+struct BarkSkeleton {
+    Skeleton skeleton;
+    std::size_t pieces = 0;   ///< connected pieces of bark
+    std::size_t stems = 0;    ///< branches of order 0
+    std::size_t floating = 0; ///< pieces that touch no thicker one and were joined to the nearest
+};
+
+/// Each connected piece of bark is thinned to an axis tree: level sets of the distance along the surface from its base,
+/// each level's pieces at their centroid (Verroust and Lazarus 1999). Pieces are then joined, thick before thin, each
+/// at its point that reaches deepest into thicker wood. At a fork the thicker limb (the longer among about equal ones)
+/// goes on; the others are of a higher order. The trunk is the piece with the largest surface that reaches near the
+/// ground.
+BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles);
+
+} // namespace kokage

@@ -1,0 +1,221 @@
+#include "trees/find_branching.h"
+
+#include "common/geometry/point_tree.h"
+#include "trees/bark_skeleton.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kokage {
+namespace {
+
+constexpr std::size_t kMaximumLeavesPerTwig = 64;
+
+/// All bark in one triangle soup.
+BarkSkeleton skeleton_of_bark(const Tree& tree) {
+    std::vector<glm::vec3> positions;
+    std::vector<glm::uvec3> triangles;
+    for (const TreePart& part : tree.parts) {
+        if (part.kind != TreePartKind::bark)
+            continue;
+        const auto first = std::uint32_t(positions.size());
+        positions.insert(positions.end(), part.positions.begin(), part.positions.end());
+        for (const glm::uvec3& t : part.triangles)
+            triangles.push_back(t + first);
+    }
+    return skeleton_from_bark(positions, triangles);
+}
+
+struct Box {
+    glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
+    void add(const glm::vec3& point) {
+        low = glm::min(low, point);
+        high = glm::max(high, point);
+    }
+    glm::vec3 extent() const { return low.x <= high.x ? high - low : glm::vec3(0.f); }
+};
+
+/// A stem from the ground below the leaves to their middle, for a crown without any wood.
+Branch imagined_trunk(const Tree& tree) {
+    Box box;
+    glm::dvec3 sum(0.0);
+    for (const Leaf& leaf : tree.leaves) {
+        box.add(leaf.centre);
+        sum += glm::dvec3(leaf.centre);
+    }
+    const glm::vec3 middle = tree.leaves.empty() ? glm::vec3(0.f) : glm::vec3(sum / double(tree.leaves.size()));
+    const float ground = tree.leaves.empty() ? 0.f : std::min(box.low.y, middle.y);
+    Branch trunk;
+    trunk.nodes = {{{middle.x, ground, middle.z}, 0.f}, {middle, 0.f}};
+    return trunk;
+}
+
+glm::vec3 centroid(const Tree& tree, std::span<const std::uint32_t> leaves) {
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t leaf : leaves)
+        sum += glm::dvec3(tree.leaves[leaf].centre);
+    return glm::vec3(sum / double(leaves.size()));
+}
+
+/// Halves a set of leaves at the median of its longest extent until each cluster's half diagonal is at most `radius`.
+void cut_into_clusters(const Tree& tree, std::span<std::uint32_t> leaves, float radius,
+                       std::vector<std::span<std::uint32_t>>& clusters) {
+    Box box;
+    for (const std::uint32_t leaf : leaves)
+        box.add(tree.leaves[leaf].centre);
+    const glm::vec3 extent = box.extent();
+    if (leaves.size() < 2 || 0.5f * glm::length(extent) <= radius) {
+        clusters.push_back(leaves);
+        return;
+    }
+    const std::size_t axis = extent.x >= extent.y && extent.x >= extent.z ? 0 : extent.y >= extent.z ? 1 : 2;
+    const auto before = [&](std::uint32_t a, std::uint32_t b) {
+        const float ca = tree.leaves[a].centre[axis], cb = tree.leaves[b].centre[axis];
+        return ca != cb ? ca < cb : a < b;
+    };
+    const std::size_t half = leaves.size() / 2;
+    std::nth_element(leaves.begin(), leaves.begin() + std::ptrdiff_t(half), leaves.end(), before);
+    cut_into_clusters(tree, leaves.first(half), radius, clusters);
+    cut_into_clusters(tree, leaves.subspan(half), radius, clusters);
+}
+
+/// Adds twigs that lead from a branch to clusters of leaves, in two generations.
+class TwigMaker {
+  public:
+    TwigMaker(Tree& tree, float crown) : tree_(tree), crown_(crown) {}
+    std::size_t twigs = 0;
+
+    void add(std::uint32_t branch, std::vector<std::uint32_t>& leaves) {
+        std::vector<std::span<std::uint32_t>> limbs;
+        cut_into_clusters(tree_, leaves, 0.5f * crown_, limbs);
+        for (const std::span<std::uint32_t> limb : limbs) {
+            const std::int32_t index = twig(std::int32_t(branch), nearest_node(branch, limb), centroid(tree_, limb));
+            std::vector<std::span<std::uint32_t>> tips;
+            cut_into_clusters(tree_, limb, 0.2f * crown_, tips);
+            for (const std::span<std::uint32_t> tip : tips) {
+                const std::int32_t bearer =
+                    tips.size() == 1
+                        ? index
+                        : twig(index, tree_.skeleton.branches[std::size_t(index)].nodes.back(), centroid(tree_, tip));
+                for (const std::uint32_t leaf : tip)
+                    tree_.leaves[leaf].branch = bearer;
+            }
+        }
+    }
+
+  private:
+    Branch::Node nearest_node(std::uint32_t branch, std::span<const std::uint32_t> leaves) const {
+        const glm::vec3 middle = centroid(tree_, leaves);
+        const std::vector<Branch::Node>& nodes = tree_.skeleton.branches[branch].nodes;
+        return *std::min_element(nodes.begin(), nodes.end(), [&](const Branch::Node& a, const Branch::Node& b) {
+            return glm::distance(a.position, middle) < glm::distance(b.position, middle);
+        });
+    }
+
+    std::int32_t twig(std::int32_t parent, const Branch::Node& from, const glm::vec3& to) {
+        Branch branch;
+        branch.parent = parent;
+        branch.order = tree_.skeleton.branches[std::size_t(parent)].order + 1;
+        branch.nodes = {{from.position, 0.f}, {to, 0.f}};
+        tree_.skeleton.branches.push_back(std::move(branch));
+        ++twigs;
+        return std::int32_t(tree_.skeleton.branches.size()) - 1;
+    }
+
+    Tree& tree_;
+    float crown_;
+};
+
+/// Gives each leaf to the branch whose axis is nearest; returns the leaves of each branch and their distances.
+struct Bearing {
+    std::vector<std::vector<std::uint32_t>> leaves;
+    std::vector<float> distance;
+};
+
+Bearing assign_leaves(Tree& tree) {
+    Bearing bearing;
+    bearing.leaves.resize(tree.skeleton.branches.size());
+    bearing.distance.resize(tree.leaves.size());
+    const AxisSamples axes = sample_axes(tree.skeleton);
+    std::vector<glm::vec3> points;
+    points.reserve(axes.samples.size());
+    for (const AxisSamples::Sample& sample : axes.samples)
+        points.push_back(sample.position);
+    const PointTree nearest_axis(points);
+    for (std::uint32_t leaf = 0; leaf < tree.leaves.size(); ++leaf) {
+        const NearestPoint nearest = nearest_axis.nearest(tree.leaves[leaf].centre);
+        const AxisSamples::Sample& sample = axes.samples[nearest.index];
+        tree.leaves[leaf].branch = std::int32_t(sample.branch);
+        bearing.leaves[sample.branch].push_back(leaf);
+        bearing.distance[leaf] = std::max(0.f, nearest.distance - sample.radius_m);
+    }
+    return bearing;
+}
+
+float percentile_95(std::vector<float> values) {
+    const std::size_t at = std::min(values.size() - 1, values.size() * 95 / 100);
+    std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(at), values.end());
+    return values[at];
+}
+
+/// True if a branch's leaves hang on it rather than around it at a distance.
+bool bears_closely(const Bearing& bearing, const std::vector<std::uint32_t>& leaves, float crown, bool is_trunk) {
+    std::vector<float> distances;
+    for (const std::uint32_t leaf : leaves)
+        distances.push_back(bearing.distance[leaf]);
+    const bool near = percentile_95(distances) <= 0.2f * crown;
+    return near && (!is_trunk || leaves.size() <= kMaximumLeavesPerTwig);
+}
+
+} // namespace
+
+float crown_radius(const Tree& tree) {
+    Box foliage, all;
+    for (const TreePart& part : tree.parts)
+        for (const glm::uvec3& triangle : part.triangles)
+            for (const std::uint32_t v :
+                 {triangle.x, triangle.y, triangle.z}) { // files may share vertices with other parts
+                all.add(part.positions[v]);
+                if (part.kind == TreePartKind::foliage)
+                    foliage.add(part.positions[v]);
+            }
+    const glm::vec3 extent = foliage.low.x <= foliage.high.x ? foliage.extent() : all.extent();
+    const float horizontal = std::max(extent.x, extent.z);
+    return 0.5f * (horizontal > 0 ? horizontal : extent.y);
+}
+
+void infer_branching(Tree& tree) {
+    tree.branching_known = false;
+    BarkSkeleton bark = skeleton_of_bark(tree);
+    tree.skeleton = std::move(bark.skeleton);
+    if (tree.skeleton.branches.empty()) {
+        tree.skeleton.branches.push_back(imagined_trunk(tree));
+        tree.notes.push_back("no bark: a trunk was imagined from the ground to the middle of the leaves");
+    } else {
+        tree.notes.push_back("branching inferred from " + std::to_string(bark.pieces) +
+                             " connected pieces of bark: " + std::to_string(tree.skeleton.branches.size()) +
+                             " branches, " + std::to_string(bark.stems) + (bark.stems == 1 ? " stem" : " stems"));
+        if (bark.floating > 0)
+            tree.notes.push_back(std::to_string(bark.floating) +
+                                 " pieces of bark touch no thicker wood and were joined to the nearest");
+    }
+    if (tree.leaves.empty())
+        return;
+    const float crown = crown_radius(tree);
+    const Bearing bearing = assign_leaves(tree);
+    TwigMaker maker(tree, crown);
+    std::size_t led = 0;
+    for (std::uint32_t branch = 0; branch < bearing.leaves.size(); ++branch) {
+        std::vector<std::uint32_t> leaves = bearing.leaves[branch];
+        if (leaves.empty() || bears_closely(bearing, leaves, crown, tree.skeleton.branches[branch].order == 0))
+            continue;
+        led += leaves.size();
+        maker.add(branch, leaves);
+    }
+    if (maker.twigs > 0)
+        tree.notes.push_back(std::to_string(led) + " leaves hang far from all wood: " + std::to_string(maker.twigs) +
+                             " twigs were imagined that lead to clusters of them");
+}
+
+} // namespace kokage

@@ -1,0 +1,152 @@
+#include "trees/find_foliage.h"
+
+#include "common/services/error.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <map>
+
+namespace kokage {
+namespace {
+
+std::string lower_case(const std::string& text) {
+    std::string result = text;
+    std::transform(result.begin(), result.end(), result.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return result;
+}
+
+template <std::size_t N>
+bool holds_any(const std::string& name, const std::array<const char*, N>& words) {
+    const std::string lower = lower_case(name);
+    return std::any_of(words.begin(), words.end(),
+                       [&](const char* word) { return lower.find(word) != std::string::npos; });
+}
+
+constexpr std::array kFoliageWords = {"leaf",  "leav",   "foliage", "needle", "blossom", "petal", "flower", "frond",
+                                      "crown", "canopy", "folha",   "blatt",  "feuille", "grass", "fern"};
+constexpr std::array kWoodWords = {"bark", "wood", "trunk", "branch", "stem", "twig", "root", "log", "stump", "brown"};
+constexpr std::array kColorWords = {"green", "autumn", "fall"};
+
+/// Mean linear colour of a material over its texture, weighted by alpha where there is one.
+glm::vec3 mean_color(const GltfMaterial& material) {
+    glm::dvec3 sum(0.0);
+    double weight = 0;
+    if (material.base_color_texture) {
+        const Image& color = *material.base_color_texture->color;
+        const Image* alpha = material.base_color_texture->alpha.get();
+        const std::size_t count = std::size_t(color.width) * std::size_t(color.height);
+        for (std::size_t i = 0; i < count; ++i) {
+            const double w = alpha ? double(alpha->pixels[i]) : 1.0;
+            sum += w * glm::dvec3(color.pixels[3 * i], color.pixels[3 * i + 1], color.pixels[3 * i + 2]);
+            weight += w;
+        }
+    }
+    return glm::vec3(material.base_color) * (weight > 0 ? glm::vec3(sum / weight) : glm::vec3(1.f));
+}
+
+bool is_green(const glm::vec3& color) {
+    return color.g > 1.05f * color.r && color.g > 1.05f * color.b;
+}
+
+std::string display_name(const GltfMaterial& material, int index) {
+    return material.name.empty() ? "material " + std::to_string(index) : "'" + material.name + "'";
+}
+
+FoundFoliage judge_by_user(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
+    FoundFoliage found;
+    found.kinds.assign(scene.meshes.size(), TreePartKind::bark);
+    for (const std::string& name : named) {
+        const std::string wanted = lower_case(name);
+        bool fits = false;
+        for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+            const GltfMesh& mesh = scene.meshes[m];
+            if (lower_case(scene.materials[std::size_t(mesh.material)].name) == wanted ||
+                lower_case(mesh.name) == wanted || lower_case(mesh.mesh_name) == wanted) {
+                found.kinds[m] = TreePartKind::foliage;
+                fits = true;
+            }
+        }
+        if (!fits) {
+            std::string names;
+            for (std::size_t m = 0; m + 1 < scene.materials.size() && m < 20; ++m)
+                names += (names.empty() ? "" : ", ") + display_name(scene.materials[m], int(m));
+            throw InputError(path + ": no material or mesh is named '" + name + "'; its materials are " +
+                             (names.empty() ? "none" : names));
+        }
+    }
+    found.notes.push_back("foliage: as named by the user");
+    return found;
+}
+
+/// The verdict on one material, with the rule that gave it; empty rule = undecided.
+struct Verdict {
+    TreePartKind kind = TreePartKind::bark;
+    std::string rule;
+};
+
+Verdict judge_material(const GltfMaterial& material) {
+    const bool wood = names_wood(material.name) && !names_foliage(material.name);
+    if (material.alpha_mode != GltfAlphaMode::opaque && !wood)
+        return {TreePartKind::foliage, material.alpha_mode == GltfAlphaMode::mask ? "alpha mask" : "alpha blend"};
+    if ((material.diffuse_transmission.value_or(0.f) > 0 || material.transmission > 0) && !wood)
+        return {TreePartKind::foliage, "it transmits light"};
+    if (names_foliage(material.name))
+        return {TreePartKind::foliage, "its name"};
+    if (wood)
+        return {TreePartKind::bark, "its name"};
+    return {};
+}
+
+} // namespace
+
+bool names_wood(const std::string& name) {
+    return holds_any(name, kWoodWords);
+}
+bool names_foliage(const std::string& name) {
+    return holds_any(name, kFoliageWords) || (holds_any(name, kColorWords) && !names_wood(name));
+}
+
+FoundFoliage find_foliage(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
+    if (!named.empty())
+        return judge_by_user(scene, named, path);
+    FoundFoliage found;
+    std::map<int, Verdict> verdicts;
+    for (const GltfMesh& mesh : scene.meshes)
+        verdicts.try_emplace(mesh.material, judge_material(scene.materials[std::size_t(mesh.material)]));
+    const auto any_foliage = [&] {
+        return std::any_of(verdicts.begin(), verdicts.end(), [](const auto& entry) {
+            return entry.second.kind == TreePartKind::foliage && !entry.second.rule.empty();
+        });
+    };
+    // Undecided materials: by what the meshes that wear them are called, then, as a last resort, by colour.
+    for (auto& [index, verdict] : verdicts) {
+        if (!verdict.rule.empty())
+            continue;
+        bool foliage = false, wood = false;
+        for (const GltfMesh& mesh : scene.meshes)
+            if (mesh.material == index) {
+                foliage = foliage || names_foliage(mesh.name) || names_foliage(mesh.mesh_name);
+                wood = wood || names_wood(mesh.name) || names_wood(mesh.mesh_name);
+            }
+        if (foliage != wood)
+            verdict = {foliage ? TreePartKind::foliage : TreePartKind::bark, "the name of its mesh"};
+    }
+    const bool decided = any_foliage();
+    for (auto& [index, verdict] : verdicts) {
+        const GltfMaterial& material = scene.materials[std::size_t(index)];
+        if (verdict.rule.empty()) {
+            const bool green = is_green(mean_color(material));
+            verdict = {green ? TreePartKind::foliage : TreePartKind::bark, green     ? "its green colour"
+                                                                           : decided ? "nothing speaks of leaves"
+                                                                                     : "its colour is not green"};
+        }
+        found.notes.push_back("material " + display_name(material, index) + " is " +
+                              (verdict.kind == TreePartKind::foliage ? "foliage" : "bark") + ": " + verdict.rule);
+    }
+    for (const GltfMesh& mesh : scene.meshes)
+        found.kinds.push_back(verdicts.at(mesh.material).kind);
+    return found;
+}
+
+} // namespace kokage

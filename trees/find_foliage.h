@@ -1,0 +1,20 @@
+#pragma once
+// Which meshes of a foreign tree are foliage. Private to trees.
+#include "common/gltf/gltf_scene.h"
+#include "trees/tree.h"
+
+namespace kokage {
+
+struct FoundFoliage {
+    std::vector<TreePartKind> kinds; ///< of each mesh of the scene
+    std::vector<std::string> notes;  ///< by which rule each material was judged
+};
+
+/// `named`: the user's choice, may be empty. Throws InputError (the file's names listed) if a name fits nothing.
+FoundFoliage find_foliage(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path);
+
+/// True if a name speaks of leaves ("leaves", "Needles_02", "DarkGreen"), or of wood ("bark", "Trunk", "woodBirch").
+bool names_foliage(const std::string& name);
+bool names_wood(const std::string& name);
+
+} // namespace kokage
