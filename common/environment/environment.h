@@ -14,13 +14,15 @@ struct DistantLight {
     struct Texel {
         glm::vec3 direction;
         glm::vec3 irradiance; ///< radiance x solid angle: what a surface facing it receives
-        float half_angle = 0; ///< of a cone with the pixel's solid angle
+        float half_angle =
+            0; ///< of a cone with the solid angle of the pixel, or of the neighbouring pixels that it stands for
     };
-    std::string name;           ///< "sun", "region 3 of 12 (u 0.41, v 0.22)", ...
+    std::string name;             ///< "sun", "region 3 of 12 (u 0.41, v 0.22)", ...
     glm::vec3 direction{0, 1, 0}; ///< towards the light; a region's energy-weighted mean
-    float half_angle = 0;       ///< radians; of the disc, or of the smallest cone around `direction` that holds the region
-    glm::vec3 irradiance{0.f};  ///< on a surface that faces it, unshadowed
-    std::vector<Texel> texels;  ///< empty for a disc
+    float half_angle = 0; ///< radians; of the disc, or of the smallest cone around `direction` that holds the region
+    glm::vec3 irradiance{
+        0.f}; ///< radiance x solid angle; for a small light, what an unshadowed surface that faces it receives
+    std::vector<Texel> texels; ///< empty for a disc
 };
 
 /// A light at a place. Irradiance at distance d on a facing surface = intensity / d^2.
@@ -30,12 +32,14 @@ struct PointLight {
     glm::vec3 intensity{0.f}; ///< W/sr in the scene's units
 };
 
-/// A direction towards a light, drawn with a probability; the estimate of irradiance is irradiance_over_pdf x visible x |cos|.
+/// A direction towards a light, drawn with a probability; the estimate of irradiance is irradiance_over_pdf x visible x
+/// |cos|.
 struct LightSample {
     glm::vec3 direction;
     glm::vec3 irradiance_over_pdf;
 };
-/// Draws a direction of a distant light: uniformly on its disc, or a texel by its share of luminance, then within the texel.
+/// Draws a direction of a distant light: uniformly on its disc, or a texel by its share of luminance, then within the
+/// texel.
 LightSample sample_light(const DistantLight& light, float u0, float u1);
 
 struct Environment {
@@ -49,10 +53,10 @@ struct Environment {
 /// What was found and done when an environment was loaded.
 struct EnvironmentReport {
     std::size_t nan_pixels = 0, infinite_pixels = 0, negative_pixels = 0;
-    int first_bad_x = -1, first_bad_y = -1; ///< in raster order, of any kind
-    std::size_t regions_found = 0;          ///< bright regions before the limit of 64
+    int first_bad_x = -1, first_bad_y = -1;     ///< in raster order, of any kind
+    std::size_t regions_found = 0;              ///< bright regions before the limit of 64
     double energy_before = 0, energy_after = 0; ///< integral of luminance over the sphere
-    std::string note;                       ///< one line a person can read; empty if there is nothing to say
+    std::string note;                           ///< one line a person can read; empty if there is nothing to say
 };
 
 } // namespace kokage

@@ -1,4 +1,5 @@
 #include "common/environment/lat_long.h"
+#include "common/services/parallel.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,8 +31,67 @@ glm::vec3 lat_long_radiance(const Image& image, const glm::vec3& direction) {
     const int x0 = (int(std::floor(x)) + image.width) % image.width, x1 = (x0 + 1) % image.width;
     const int y0 = std::clamp(int(std::floor(y)), 0, image.height - 1);
     const int y1 = std::clamp(int(std::floor(y)) + 1, 0, image.height - 1);
-    auto pixel = [&](int px, int py) { return glm::vec3(image.at(px, py)[0], image.at(px, py)[1], image.at(px, py)[2]); };
-    return (1 - fy) * ((1 - fx) * pixel(x0, y0) + fx * pixel(x1, y0)) + fy * ((1 - fx) * pixel(x0, y1) + fx * pixel(x1, y1));
+    auto pixel = [&](int px, int py) {
+        return glm::vec3(image.at(px, py)[0], image.at(px, py)[1], image.at(px, py)[2]);
+    };
+    return (1 - fy) * ((1 - fx) * pixel(x0, y0) + fx * pixel(x1, y0)) +
+           fy * ((1 - fx) * pixel(x0, y1) + fx * pixel(x1, y1));
+}
+
+namespace {
+
+/// Which old cells a new cell covers, and how much of each.
+struct Overlap {
+    int first;
+    std::vector<double> weights; ///< sum 1
+};
+
+/// Cells between consecutive borders (ascending); measured by `measure(border)`.
+template <typename Measure>
+std::vector<Overlap> overlaps(int old_count, int new_count, Measure measure) {
+    std::vector<Overlap> result;
+    for (int i = 0; i < new_count; ++i) {
+        const double begin = double(i) * old_count / new_count, end = double(i + 1) * old_count / new_count;
+        Overlap overlap{int(begin), {}};
+        const double size = measure(end) - measure(begin);
+        for (int cell = overlap.first; cell < old_count && cell < end; ++cell)
+            overlap.weights.push_back((measure(std::min(end, cell + 1.0)) - measure(std::max(begin, double(cell)))) /
+                                      size);
+        result.push_back(std::move(overlap));
+    }
+    return result;
+}
+
+} // namespace
+
+Image reduce_lat_long(Image image, int width) {
+    if (width < 1 || image.width <= width)
+        return image;
+    const int height = std::max(1, int(std::lround(double(image.height) * width / image.width)));
+    const auto columns = overlaps(image.width, width, [](double x) { return x; });
+    // 1 - cos(theta), written so that rows at the poles keep their digits.
+    const auto rows = overlaps(image.height, height, [&](double y) {
+        const double sine = std::sin(0.5 * kPiDouble * y / image.height);
+        return 2 * sine * sine;
+    });
+    Image result(width, height, image.channels);
+    parallel_blocks(std::size_t(height), 8, [&](std::size_t begin, std::size_t end) {
+        std::vector<double> sum(std::size_t(image.channels));
+        for (std::size_t y = begin; y < end; ++y)
+            for (int x = 0; x < width; ++x) {
+                std::fill(sum.begin(), sum.end(), 0.0);
+                const Overlap &row = rows[y], &column = columns[std::size_t(x)];
+                for (std::size_t j = 0; j < row.weights.size(); ++j)
+                    for (std::size_t i = 0; i < column.weights.size(); ++i) {
+                        const float* pixel = image.at(column.first + int(i), row.first + int(j));
+                        for (std::size_t c = 0; c < sum.size(); ++c)
+                            sum[c] += row.weights[j] * column.weights[i] * double(pixel[c]);
+                    }
+                for (std::size_t c = 0; c < sum.size(); ++c)
+                    result.at(x, int(y))[c] = float(sum[c]);
+            }
+    });
+    return result;
 }
 
 } // namespace kokage

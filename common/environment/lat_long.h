@@ -18,5 +18,8 @@ glm::vec3 direction_from_lat_long(glm::vec2 uv);
 double pixel_solid_angle(int y, int width, int height);
 /// Bilinear lookup, wrapping in u and clamping at the poles. The image has at least 3 channels.
 glm::vec3 lat_long_radiance(const Image& image, const glm::vec3& direction);
+/// Shrinks to `width` columns (rows in proportion, at least 1): every new pixel is the solid-angle mean of what it
+/// covers, so the integral over the sphere is kept, of every channel. An image that is not wider is returned as it is.
+Image reduce_lat_long(Image image, int width);
 
 } // namespace kokage

@@ -93,7 +93,7 @@ void decode_srgb(Image& image, bool has_alpha, bool eight_bits) {
         }
 }
 
-Image convert_channels(const Image& image, int channels) {
+Image convert_channels(Image image, int channels) {
     if (channels == 0 || channels == image.channels)
         return image;
     Image result(image.width, image.height, channels);
@@ -127,7 +127,7 @@ void check_header(const OIIO::ImageSpec& spec, const std::string& name, std::uin
 }
 
 /// An EXR may hold a part of its frame, or more than it: cut and pad to the frame.
-Image to_frame(const Image& image, const OIIO::ImageSpec& spec) {
+Image to_frame(Image image, const OIIO::ImageSpec& spec) {
     const int width = std::max(spec.full_width, 1), height = std::max(spec.full_height, 1);
     if (spec.x == spec.full_x && spec.y == spec.full_y && spec.width == width && spec.height == height)
         return image;
@@ -164,14 +164,14 @@ Image read(Input input, const std::string& name, const ImageLoading& loading) {
                     image.pixels[i * read_channels + std::size_t(choice.source[std::size_t(c)] - first)];
         image = std::move(chosen);
     }
-    image = to_frame(image, spec);
+    image = to_frame(std::move(image), spec);
     const bool alpha_wanted = loading.channels == 0 || loading.channels == 4;
     if (choice.has_alpha() && alpha_wanted && is_premultiplied(*input, spec))
         divide_by_alpha(image);
     const bool integers = !spec.format.is_floating_point();
     if (loading.meaning == PixelMeaning::color && integers)
         decode_srgb(image, choice.has_alpha(), spec.format.size() == 1);
-    return convert_channels(image, loading.channels);
+    return convert_channels(std::move(image), loading.channels);
 }
 
 void use_our_thread_count() {
@@ -310,7 +310,7 @@ Image for_float_format(const Image& image, bool rgbe) {
         for (std::size_t i = 0; i < result.pixels.size(); i += 4)
             for (std::size_t c = 0; c < 3; ++c)
                 result.pixels[i + c] *= result.pixels[i + 3];
-    return rgbe ? convert_channels(result, 3) : result;
+    return rgbe ? convert_channels(std::move(result), 3) : result;
 }
 
 std::string lower_case_extension(const std::filesystem::path& path) {

@@ -1,0 +1,59 @@
+#include "common/environment/environment.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+/// Uniform in solid angle on the cone around `axis`. Works with 1 - cos, so that a sun of 0.27 degrees does not drown
+/// in rounding.
+glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u1) {
+    if (half_angle <= 0)
+        return axis;
+    const float half_sine = std::sin(0.5f * std::min(half_angle, kPi));
+    const float height = u0 * 2 * half_sine * half_sine; // 1 - cos(theta)
+    const float radius = std::sqrt(std::max(0.f, height * (2 - height))), phi = 2 * kPi * u1;
+    // Duff et al. 2017, "Building an Orthonormal Basis, Revisited", listing 3.
+    const float sign = std::copysign(1.f, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
+    const glm::vec3 tangent(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
+    const glm::vec3 bitangent(b, sign + axis.y * axis.y * a, -axis.y);
+    return glm::normalize((1 - height) * axis + radius * (std::cos(phi) * tangent + std::sin(phi) * bitangent));
+}
+
+} // namespace
+
+LightSample sample_light(const DistantLight& light, float u0, float u1) {
+    if (light.texels.empty())
+        return {sample_cone(light.direction, light.half_angle, u0, u1), light.irradiance};
+    double total = 0;
+    for (const DistantLight::Texel& texel : light.texels)
+        total += luminance(texel.irradiance);
+    // All of it black, or below what float can tell from black: every texel alike.
+    const double count = double(light.texels.size());
+    auto share = [&](const DistantLight::Texel& texel) {
+        return total > 0 ? luminance(texel.irradiance) / total : 1 / count;
+    };
+    double left = u0;
+    std::size_t chosen = 0, last_possible = 0;
+    for (;; ++chosen) {
+        if (chosen == light.texels.size()) { // rounding of the shares' sum
+            chosen = last_possible;
+            left = 0.5 * share(light.texels[chosen]);
+            break;
+        }
+        const double probability = share(light.texels[chosen]);
+        if (left < probability)
+            break;
+        left -= probability;
+        if (probability > 0)
+            last_possible = chosen;
+    }
+    const DistantLight::Texel& texel = light.texels[chosen];
+    const double probability = share(texel);
+    const float rest = std::min(float(left / probability), 0x1.fffffep-1f);
+    return {sample_cone(texel.direction, texel.half_angle, rest, u1),
+            glm::vec3(glm::dvec3(texel.irradiance) / probability)};
+}
+
+} // namespace kokage

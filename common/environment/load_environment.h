@@ -1,0 +1,35 @@
+#pragma once
+// Image files -> Environment: read, repair, reduce, split.
+#include "common/environment/environment.h"
+#include "common/environment/split_lights.h"
+
+#include <filesystem>
+
+namespace kokage {
+
+struct EnvironmentLoading {
+    bool strict = false;  ///< refuse bad pixels instead of repairing them
+    bool split = true;    ///< split lights off
+    int max_width = 4096; ///< wider maps are reduced by whole factors to at most this (energy kept); 0 = never
+    LightSplitting splitting;
+};
+
+/// Reads a lat-long image. Integer files (PNG) are decoded from sRGB. Throws InputError with the path, and with the
+/// place under `strict`.
+Environment load_environment(const std::filesystem::path& path, EnvironmentReport& report,
+                             const EnvironmentLoading& loading = {});
+
+/// The same from pixels: at least 3 channels, linear radiance. `name` is for messages and Environment::description.
+Environment environment_from_image(Image image, const std::string& name, EnvironmentReport& report,
+                                   const EnvironmentLoading& loading = {});
+
+/// Repairs pixels in place and counts them. The rule, per channel:
+///   NaN       -> the mean of the nearest good pixels (the smallest square ring around it that has one);
+///   +infinite -> the largest finite value of that channel in the image (a sun that overflowed stays the brightest
+///   thing);
+///                so do values above 1e32, whose sums would overflow;
+///   negative  -> 0 (-infinite too): compression and resampling leave small ones beside bright edges.
+/// Throws InputError if a channel has no good pixel at all, or under `strict` at the first bad one, with its place.
+void repair_pixels(Image& image, const std::string& name, bool strict, EnvironmentReport& report);
+
+} // namespace kokage
