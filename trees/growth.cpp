@@ -1,0 +1,53 @@
+#include "trees/growth.h"
+
+#include "trees/growth/bark.h"
+#include "trees/growth/crown.h"
+#include "trees/growth/leaves.h"
+#include "trees/growth/materials.h"
+#include "trees/growth/skeleton.h"
+#include "trees/growth/wood_graph.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+/// Steps, reach and kill distance of space colonisation, as shares of the attraction points' spacing. A kill distance
+/// of about two steps lets a branch end within reach of its leaves (Runions et al. 2007, section 3).
+constexpr float step_share = 0.36f, influence_share = 4.5f, kill_share = 0.75f;
+/// Shoots that one attraction point stands for.
+constexpr double shoots_per_attractor = 3.4;
+
+} // namespace
+
+Tree grow(const GrowthParameters& parameters, Progress& progress) {
+    check_parameters(parameters);
+    progress.begin("growing " + parameters.species, 4);
+    Tree tree;
+    tree.name = parameters.species;
+    tree.source = "grown: " + parameters.species + ", seed " + std::to_string(parameters.seed);
+    const Crown crown(parameters);
+    const int attractor_count =
+        std::max(1, int(std::lround(parameters.leaves / parameters.leaves_per_shoot / shoots_per_attractor)));
+    const Crown::Attractors attractors = crown.attractors(attractor_count);
+    const float spacing = attractors.spacing_m, step = step_share * spacing;
+    std::vector<WoodNode> wood = grow_scaffold(parameters, crown, step);
+    colonise(wood, attractors, parameters, step, influence_share * spacing, kill_share * spacing, progress);
+    progress.advance(1);
+    GrownSkeleton grown = make_skeleton(std::move(wood), parameters);
+    progress.throw_if_stopped();
+    progress.advance(1);
+    tree.parts.resize(2);
+    tree.materials = {bark_material(parameters), leaf_material(parameters)};
+    tree.bark_patch_count = make_bark(grown.skeleton, parameters, tree.parts[0]);
+    progress.throw_if_stopped();
+    progress.advance(1);
+    tree.parts[1].material = 1;
+    make_leaves(grown, parameters, {0, crown.widest_m, 0}, tree.parts[1], tree.leaves);
+    tree.skeleton = std::move(grown.skeleton);
+    progress.advance(1);
+    return tree;
+}
+
+} // namespace kokage

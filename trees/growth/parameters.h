@@ -1,0 +1,60 @@
+#pragma once
+// What a tree grows from: a species is a set of these values.
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kokage {
+
+enum class LeafForm {
+    outline, ///< a flat polygon with the leaf's outline
+    alpha    ///< a rectangular card with the outline in its alpha texture
+};
+
+/// Lengths in metres, angles in degrees. Ranges, units and meanings: parameter_descriptions().
+struct GrowthParameters {
+    std::string species = "oak";
+    std::uint64_t seed = 1;
+    int leaves = 30000;
+
+    double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.0;
+    LeafForm leaf_form = LeafForm::outline;
+    int leaf_detail = 1;
+    double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0018, shoot_angle = 48;
+
+    double leaf_area_index = 3.5, height_to_width = 0.95;
+    double crown_base = 0.2, crown_widest = 0.4, crown_bottom = 0.7, crown_roundness = 2.2;
+    int crown_lobes = 26;
+    double crown_lobe_depth = 0.22, crown_shell = 2.5, crown_clumping = 0.5;
+
+    double trunk_reach = 0.62, trunk_wiggle = 9;
+    int limbs = 9;
+    double limb_first = 0.17, limb_last = 0.52, limb_elevation_low = 14, limb_elevation_high = 62, limb_zigzag = 26,
+           limb_reach = 0.75;
+    double branch_zigzag = 16, branch_up = 0.1, pipe_exponent = 2.0;
+
+    double root_flare = 0.9, bark_tile = 0.4;
+    int textures = 1;
+};
+
+struct ParameterDescription {
+    std::string name, unit; ///< unit "m", "degrees", "of the height", ...; empty = a pure number
+    double low = 0, high = 0;
+    bool whole = false; ///< takes whole numbers only
+    double value = 0;   ///< in the parameters that were asked about
+    std::string meaning;
+    std::vector<std::string> choices; ///< names of the values low..high, if they have names
+};
+
+/// All parameters that set_parameter knows, in reading order, with their values in `parameters`.
+std::vector<ParameterDescription> parameter_descriptions(const GrowthParameters& parameters);
+
+/// Sets a parameter by name from text. Throws InputError: unknown name (with the nearest known one), not a number, out
+/// of range.
+void set_parameter(GrowthParameters& parameters, std::string_view name, std::string_view value);
+
+/// Throws InputError if a value is not finite or out of its range.
+void check_parameters(const GrowthParameters& parameters);
+
+} // namespace kokage

@@ -1,0 +1,237 @@
+#include "trees/growth/skeleton.h"
+
+#include "common/services/random.h"
+#include "trees/growth/directions.h"
+#include "trees/growth/streams.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+/// Children of every node, in index order: first_child / next_sibling lists.
+struct Children {
+    std::vector<std::int32_t> first, next;
+
+    explicit Children(const std::vector<WoodNode>& nodes) : first(nodes.size(), -1), next(nodes.size(), -1) {
+        for (std::size_t i = nodes.size(); i-- > 0;)
+            if (nodes[i].parent >= 0) {
+                next[i] = first[std::size_t(nodes[i].parent)];
+                first[std::size_t(nodes[i].parent)] = std::int32_t(i);
+            }
+    }
+};
+
+/// Shares `total` whole things out in proportion to weights, exactly.
+std::vector<std::uint32_t> share_out(std::uint32_t total, const std::vector<double>& weights) {
+    double sum = 0, so_far = 0;
+    for (const double w : weights)
+        sum += w;
+    std::vector<std::uint32_t> shares(weights.size(), 0);
+    std::uint32_t given = 0;
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+        so_far += weights[i];
+        const bool last = i + 1 == weights.size();
+        const std::uint32_t until =
+            last ? total : std::min(total, std::uint32_t(std::floor(so_far / sum * total + 0.5)));
+        shares[i] = until - std::min(given, until);
+        given = std::max(given, until);
+    }
+    return shares;
+}
+
+/// How many steps each node lies from the farthest end that it bears.
+std::vector<int> steps_to_end(const std::vector<WoodNode>& nodes) {
+    std::vector<int> steps(nodes.size(), 0);
+    for (std::size_t i = nodes.size(); i-- > 1;)
+        if (nodes[i].parent >= 0)
+            steps[std::size_t(nodes[i].parent)] = std::max(steps[std::size_t(nodes[i].parent)], steps[i] + 1);
+    return steps;
+}
+
+class SkeletonBuilder {
+  public:
+    SkeletonBuilder(std::vector<WoodNode> nodes, const GrowthParameters& p)
+        : nodes_(std::move(nodes)), p_(p), children_(nodes_) {
+        place_shoots();
+        measure();
+    }
+
+    GrownSkeleton build() {
+        struct Start {
+            std::int32_t node, parent_branch;
+            int order;
+        };
+        // Depth first, parents before children.
+        std::vector<Start> pending{{0, -1, 0}};
+        while (!pending.empty()) {
+            const Start start = pending.back();
+            pending.pop_back();
+            const std::int32_t index = std::int32_t(result_.skeleton.branches.size());
+            result_.skeleton.branches.push_back({start.parent_branch, start.order, {}});
+            Branch branch{start.parent_branch, start.order, {}};
+            if (start.parent_branch >= 0)
+                branch.nodes.push_back(
+                    {nodes_[std::size_t(nodes_[std::size_t(start.node)].parent)].position, radius(start.node)});
+            std::vector<Start> forks;
+            std::int32_t node = start.node;
+            for (;;) {
+                branch.nodes.push_back({nodes_[std::size_t(node)].position, radius(node)});
+                const std::int32_t next = main_child(node);
+                for (std::int32_t c = children_.first[std::size_t(node)]; c >= 0; c = children_.next[std::size_t(c)])
+                    if (c != next && load_[std::size_t(c)] > 0)
+                        forks.push_back({c, index, start.order + 1});
+                if (next < 0)
+                    break;
+                add_side_shoots(node, 0, index, start.order);
+                node = next;
+            }
+            finish_with_shoots(branch, node, index, start.order);
+            result_.skeleton.branches[std::size_t(index)] = std::move(branch);
+            pending.insert(pending.end(), forks.rbegin(), forks.rend());
+        }
+        order_side_shoots();
+        share_leaves();
+        return std::move(result_);
+    }
+
+  private:
+    struct SideShoot {
+        std::int32_t branch;
+        int order;
+        glm::vec3 from, direction;
+        std::uint64_t key;
+    };
+
+    void place_shoots() {
+        const std::vector<int> steps = steps_to_end(nodes_);
+        static constexpr double weight_of_step[] = {3.0, 1.2, 0.8, 0.4};
+        std::vector<double> weights;
+        std::vector<std::size_t> where;
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            if (steps[i] < 4 && nodes_[i].may_branch) {
+                where.push_back(i);
+                weights.push_back(weight_of_step[steps[i]]);
+            }
+        if (where.empty()) { // a seedling without a branch
+            where.push_back(nodes_.size() - 1);
+            weights.push_back(1);
+        }
+        const std::uint32_t shoots =
+            std::uint32_t(std::clamp(std::round(p_.leaves / p_.leaves_per_shoot), 1.0, double(p_.leaves)));
+        const std::vector<std::uint32_t> shares = share_out(shoots, weights);
+        shoots_on_.assign(nodes_.size(), 0);
+        for (std::size_t i = 0; i < where.size(); ++i)
+            shoots_on_[where[i]] = shares[i];
+    }
+
+    void measure() {
+        load_.assign(nodes_.size(), 0);
+        for (std::size_t i = nodes_.size(); i-- > 0;) {
+            load_[i] += shoots_on_[i];
+            if (nodes_[i].parent >= 0)
+                load_[std::size_t(nodes_[i].parent)] += load_[i];
+        }
+    }
+
+    /// Pipe model: every shoot below counts with radius^e.
+    float radius(std::int32_t node) const {
+        return float(p_.shoot_radius * std::pow(std::max(1.0, load_[std::size_t(node)]), 1 / p_.pipe_exponent));
+    }
+
+    std::int32_t main_child(std::int32_t node) const {
+        std::int32_t best = -1;
+        for (std::int32_t c = children_.first[std::size_t(node)]; c >= 0; c = children_.next[std::size_t(c)]) {
+            if (load_[std::size_t(c)] <= 0)
+                continue;
+            const bool same_axis =
+                nodes_[std::size_t(node)].axis >= 0 && nodes_[std::size_t(c)].axis == nodes_[std::size_t(node)].axis;
+            if (same_axis)
+                return c;
+            if (best < 0 || load_[std::size_t(c)] > load_[std::size_t(best)])
+                best = c;
+        }
+        return best;
+    }
+
+    glm::vec3 direction_at(std::int32_t node) const {
+        const WoodNode& n = nodes_[std::size_t(node)];
+        return n.parent < 0 ? glm::vec3(0, 1, 0)
+                            : unit_or(n.position - nodes_[std::size_t(n.parent)].position, {0, 1, 0});
+    }
+
+    void add_side_shoots(std::int32_t node, std::uint32_t first, std::int32_t branch, int order) {
+        const glm::vec3 along = direction_at(node), from = nodes_[std::size_t(node)].position;
+        for (std::uint32_t k = first; k < shoots_on_[std::size_t(node)]; ++k) {
+            const std::uint64_t key = (std::uint64_t(node) << 8) + k;
+            Random random(p_.seed, streams::of(streams::shoot, key));
+            const float angle = radians(p_.shoot_angle) * random.uniform(0.6f, 1.4f);
+            const glm::vec3 out =
+                tilted(along, angle, 2.39996323f * float(k) + 1.3f * float(node) + random.uniform(-0.5f, 0.5f));
+            side_shoots_.push_back({branch, order + 1, from, unit_or(out + glm::vec3(0, 0.25f, 0), out), key});
+        }
+    }
+
+    /// Appends the nodes of a shoot that runs from the last node of `branch`, bending upwards a little.
+    void grow_shoot(Branch& branch, glm::vec3 direction, std::uint64_t key) {
+        Random random(p_.seed, streams::of(streams::shoot, key + (1ull << 40)));
+        const std::uint32_t first_node = std::uint32_t(branch.nodes.size()) - 1;
+        const float length = float(p_.shoot_length) * random.uniform(0.6f, 1.4f), radius_m = float(p_.shoot_radius);
+        glm::vec3 position = branch.nodes.back().position;
+        for (int i = 0; i < 2; ++i) {
+            direction = unit_or(direction + 0.2f * random_direction(random) + glm::vec3(0, 0.12f, 0), direction);
+            position += 0.5f * length * direction;
+            branch.nodes.push_back({position, radius_m * (i == 0 ? 0.85f : 0.5f)});
+        }
+        result_.shoots.push_back({-1, first_node, 0, 0});
+    }
+
+    /// The end of a branch: its first shoot continues it, the others stand around it.
+    void finish_with_shoots(Branch& branch, std::int32_t node, std::int32_t index, int order) {
+        if (shoots_on_[std::size_t(node)] > 0) {
+            grow_shoot(branch, direction_at(node), std::uint64_t(node) << 8);
+            result_.shoots.back().branch = index;
+        }
+        add_side_shoots(node, 1, index, order);
+    }
+
+    /// Side shoots become branches after all others: parents still come first.
+    void order_side_shoots() {
+        for (const SideShoot& side : side_shoots_) {
+            Branch branch{side.branch, side.order, {{side.from, float(p_.shoot_radius)}}};
+            grow_shoot(branch, side.direction, side.key);
+            result_.shoots.back().branch = std::int32_t(result_.skeleton.branches.size());
+            result_.skeleton.branches.push_back(std::move(branch));
+        }
+    }
+
+    void share_leaves() {
+        std::vector<double> weights;
+        for (std::size_t i = 0; i < result_.shoots.size(); ++i)
+            weights.push_back(Random(p_.seed, streams::of(streams::leaf, i + (1ull << 40))).uniform(0.6f, 1.4f));
+        const std::vector<std::uint32_t> shares = share_out(std::uint32_t(p_.leaves), weights);
+        std::uint32_t first = 0;
+        for (std::size_t i = 0; i < result_.shoots.size(); ++i) {
+            result_.shoots[i].first_leaf = first;
+            result_.shoots[i].leaf_count = shares[i];
+            first += shares[i];
+        }
+    }
+
+    std::vector<WoodNode> nodes_;
+    const GrowthParameters& p_;
+    Children children_;
+    std::vector<std::uint32_t> shoots_on_;
+    std::vector<double> load_; ///< shoots that a node bears
+    std::vector<SideShoot> side_shoots_;
+    GrownSkeleton result_;
+};
+
+} // namespace
+
+GrownSkeleton make_skeleton(std::vector<WoodNode> nodes, const GrowthParameters& parameters) {
+    return SkeletonBuilder(std::move(nodes), parameters).build();
+}
+
+} // namespace kokage

@@ -1,0 +1,152 @@
+#include "trees/growth/tube.h"
+
+#include "trees/growth/directions.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+int sides_of(float radius) {
+    return std::clamp(int(std::lround(3 + 48 * std::pow(radius, 0.75f))), 3, 40);
+}
+
+float distance_to_segment(const glm::vec3& p, const glm::vec3& a, const glm::vec3& b) {
+    const glm::vec3 ab = b - a;
+    const float square = glm::dot(ab, ab);
+    const float t = square > 0 ? std::clamp(glm::dot(p - a, ab) / square, 0.f, 1.f) : 0.f;
+    return glm::distance(p, a + t * ab);
+}
+
+/// Douglas-Peucker: marks the nodes that are needed to stay within a share of the radius.
+void mark_needed(const std::vector<Branch::Node>& nodes, std::size_t first, std::size_t last,
+                 std::vector<char>& needed) {
+    float worst = 1.f;
+    std::size_t at = first;
+    for (std::size_t i = first + 1; i < last; ++i) {
+        const float tolerance = std::max(0.35f * nodes[i].radius_m, 0.001f);
+        const float excess =
+            distance_to_segment(nodes[i].position, nodes[first].position, nodes[last].position) / tolerance;
+        if (excess > worst) {
+            worst = excess;
+            at = i;
+        }
+    }
+    if (at == first)
+        return;
+    needed[at] = 1;
+    mark_needed(nodes, first, at, needed);
+    mark_needed(nodes, at, last, needed);
+}
+
+/// Catmull-Rom through four points.
+glm::vec3 spline(const glm::vec3& a, const glm::vec3& b, const glm::vec3& c, const glm::vec3& d, float t) {
+    return 0.5f *
+           (2.f * b + (c - a) * t + (2.f * a - 5.f * b + 4.f * c - d) * t * t + (3.f * (b - c) + d - a) * t * t * t);
+}
+
+struct Point {
+    glm::vec3 position;
+    float radius;
+};
+
+/// The centre line: needed nodes, with points between them on thick wood so that its bends are round.
+std::vector<Point> centre_line(const std::vector<Branch::Node>& nodes) {
+    std::vector<char> needed(nodes.size(), 0);
+    needed.front() = needed.back() = 1;
+    mark_needed(nodes, 0, nodes.size() - 1, needed);
+    std::vector<Point> points;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (needed[i])
+            points.push_back({nodes[i].position, nodes[i].radius_m});
+    std::vector<Point> line;
+    for (std::size_t i = 0; i + 1 < points.size(); ++i) {
+        const Point &a = points[i == 0 ? 0 : i - 1], &b = points[i], &c = points[i + 1],
+                    &d = points[std::min(i + 2, points.size() - 1)];
+        const float length = glm::distance(b.position, c.position);
+        const int pieces = std::clamp(int(length / (5 * std::max(b.radius, 0.012f))), 1, 6);
+        for (int k = 0; k < (b.radius > 0.01f ? pieces : 1); ++k) {
+            const float t = float(k) / float(pieces);
+            line.push_back(
+                {spline(a.position, b.position, c.position, d.position, t), b.radius + t * (c.radius - b.radius)});
+        }
+    }
+    line.push_back(points.back());
+    return line;
+}
+
+/// Adds a point to the line at a distance from its start, unless there is one close by or the line is shorter.
+void insert_at(std::vector<Point>& line, float distance) {
+    float before = 0;
+    for (std::size_t i = 0; i + 1 < line.size(); ++i) {
+        const float length = glm::distance(line[i].position, line[i + 1].position);
+        if (distance < before + length) {
+            const float t = (distance - before) / length, near = 0.3f * line[i].radius;
+            if (distance - before > near && before + length - distance > near)
+                line.insert(line.begin() + std::ptrdiff_t(i) + 1, {glm::mix(line[i].position, line[i + 1].position, t),
+                                                                   glm::mix(line[i].radius, line[i + 1].radius, t)});
+            return;
+        }
+        before += length;
+    }
+}
+
+std::vector<Ring> rings_along(const std::vector<Point>& line, bool flat_start) {
+    std::vector<Ring> rings;
+    float length = 0;
+    for (std::size_t i = 0; i < line.size(); ++i) {
+        const glm::vec3 before = i > 0 ? unit_or(line[i].position - line[i - 1].position, {0, 1, 0}) : glm::vec3(0.f);
+        const glm::vec3 after =
+            i + 1 < line.size() ? unit_or(line[i + 1].position - line[i].position, {0, 1, 0}) : glm::vec3(0.f);
+        Ring ring;
+        ring.centre = line[i].position;
+        ring.along = i == 0 && flat_start ? glm::vec3(0, 1, 0) : unit_or(before + after, i > 0 ? before : after);
+        length += i > 0 ? glm::distance(line[i].position, line[i - 1].position) : 0.f;
+        ring.from_start_m = length;
+        ring.radius_m = line[i].radius;
+        ring.sides = sides_of(ring.radius_m);
+        if (i == 0) {
+            ring.x = any_perpendicular(ring.along);
+        } else { // parallel transport: the frame turns no more than the line does
+            ring.x = unit_or(rings.back().x - glm::dot(rings.back().x, ring.along) * ring.along,
+                             any_perpendicular(ring.along));
+            ring.sides = std::min(ring.sides, rings.back().sides);
+        }
+        ring.y = glm::cross(ring.along, ring.x);
+        rings.push_back(ring);
+    }
+    return rings;
+}
+
+} // namespace
+
+std::vector<Ring> place_rings(const Branch& branch, float parent_radius, const GrowthParameters& p) {
+    std::vector<Point> line = centre_line(branch.nodes);
+    // Coincident points have no direction.
+    line.erase(
+        std::unique(line.begin(), line.end(),
+                    [](const Point& a, const Point& b) { return glm::distance(a.position, b.position) < 1e-6f; }),
+        line.end());
+    if (line.size() < 2)
+        line.push_back({line[0].position + glm::vec3(0, std::max(1e-4f, line[0].radius), 0), line[0].radius});
+    const float radius = line[0].radius;
+    const bool is_trunk = parent_radius <= 0, has_collar = !is_trunk && radius > 0.008f;
+    if (is_trunk && p.root_flare > 0)
+        for (const float share : {0.35f, 0.9f, 1.8f, 3.2f})
+            insert_at(line, share * radius);
+    if (has_collar)
+        for (const float share : {0.2f, 1.f, 2.2f})
+            insert_at(line, 0.9f * parent_radius + share * radius);
+    std::vector<Ring> rings = rings_along(line, is_trunk);
+    if (has_collar) // the wood swells where a branch comes out of its parent
+        for (Ring& ring : rings) {
+            const float outside = std::max(0.f, ring.from_start_m - 0.8f * parent_radius);
+            const float room = std::max(1.f, 0.95f * parent_radius / ring.radius_m);
+            ring.radius_m *= std::min(room, 1 + 0.75f * std::exp(-outside / (1.1f * radius)));
+        }
+    rings.back().radius_m = 0;
+    return rings;
+}
+
+} // namespace kokage
