@@ -1,0 +1,16 @@
+#pragma once
+#include "common/scene/patch_scene.h"
+
+#include <vector>
+
+namespace kokage {
+
+/// One point and one direction for each patch, for methods that read light at a patch's middle.
+struct PatchGeometry {
+    std::vector<glm::vec3> centres; ///< area centroid; the corners' mean where the area is zero
+    std::vector<glm::vec3> normals; ///< unit mean normal of the front; +Y where the area is zero
+};
+
+PatchGeometry patch_geometry(const PatchScene& scene);
+
+} // namespace kokage
