@@ -1,4 +1,5 @@
 #include "foliage/capture_directions.h"
+#include "common/directions/legendre.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,30 +7,6 @@
 namespace kokage {
 
 namespace {
-
-/// Nodes (falling) and weights of Gauss-Legendre quadrature on [-1, 1], by Newton's method on P_n.
-void gauss_legendre(int n, std::vector<double>& nodes, std::vector<double>& weights) {
-    nodes.resize(std::size_t(n));
-    weights.resize(std::size_t(n));
-    for (int i = 0; i < n; ++i) {
-        double x = std::cos(kPiDouble * (i + 0.75) / (n + 0.5)), derivative = 1;
-        for (int iteration = 0; iteration < 100; ++iteration) {
-            double p0 = 1, p1 = x;
-            for (int l = 2; l <= n; ++l) {
-                const double p2 = ((2 * l - 1) * x * p1 - (l - 1) * p0) / l;
-                p0 = p1;
-                p1 = p2;
-            }
-            derivative = n * (p0 - x * p1) / (1 - x * x);
-            const double step = p1 / derivative;
-            x -= step;
-            if (std::abs(step) < 1e-16)
-                break;
-        }
-        nodes[std::size_t(i)] = x;
-        weights[std::size_t(i)] = 2 / ((1 - x * x) * derivative * derivative);
-    }
-}
 
 /// Adds value x overlap of the interval [low, high) of a row, both in units of cells, to the row's cells.
 void spread(double low, double high, const glm::dvec3& value, std::vector<glm::dvec3>& cells) {
@@ -53,16 +30,16 @@ CaptureDirections make_capture_directions(int bands, int least_count) {
     CaptureDirections set;
     set.rings = std::max({bands, int(std::ceil(std::sqrt(std::max(least_count, 1) / 2.0))), 1});
     set.per_ring = 2 * set.rings;
-    std::vector<double> nodes, weights;
-    gauss_legendre(set.rings, nodes, weights);
+    const std::vector<QuadratureNode> nodes = gauss_legendre(set.rings); // ascending
     set.borders.push_back(1);
     for (int ring = 0; ring < set.rings; ++ring) {
-        const double y = nodes[std::size_t(ring)], radius = std::sqrt(std::max(0.0, 1 - y * y));
-        set.borders.push_back(set.borders.back() - weights[std::size_t(ring)]);
+        const QuadratureNode& node = nodes[std::size_t(set.rings - 1 - ring)];
+        const double y = node.x, radius = std::sqrt(std::max(0.0, 1 - y * y));
+        set.borders.push_back(set.borders.back() - node.weight);
         for (int j = 0; j < set.per_ring; ++j) {
             const double azimuth = 2 * kPiDouble * ((j + 0.5) / set.per_ring - 0.5);
             set.directions.emplace_back(radius * std::cos(azimuth), y, radius * std::sin(azimuth));
-            set.solid_angles.push_back(float(weights[std::size_t(ring)] * 2 * kPiDouble / set.per_ring));
+            set.solid_angles.push_back(float(node.weight * 2 * kPiDouble / set.per_ring));
         }
     }
     set.borders.back() = -1;

@@ -1,5 +1,6 @@
 #pragma once
-// The four methods of shading behind one interface:  scene -> transport (who sees whom; no light in it) -> solve(lighting) -> solution.
+// The four methods of shading behind one interface:  scene -> transport (who sees whom; no light in it) ->
+// solve(lighting) -> solution.
 #include "common/environment/environment.h"
 #include "common/scene/patch_scene.h"
 #include "common/services/progress.h"
@@ -20,11 +21,11 @@ std::string_view method_name(Method method);
 
 struct ShadingOptions {
     Method method = Method::bundles;
-    double error = 0.05;      ///< asked MRE (DESIGN 3); not used by `paper`
-    int effort = 0;           ///< 0 = from `error`; else bundles: directions, path-traced: paths a leaf side
-    int maps = 0;             ///< 0 = the method's default (paper: 15)
+    double error = 0.05; ///< asked MRE (DESIGN 3); not used by `paper`
+    int effort = 0;      ///< 0 = from `error`; else bundles: directions, path-traced: paths a leaf side
+    int maps = 0;        ///< 0 = the method's default (paper: 15)
     int bands = 7;
-    int max_bounces = 0;      ///< 0 = until the residual is below a tenth of the asked error
+    int max_bounces = 0; ///< 0 = until the residual is below a tenth of the asked error
     GatherRule gather = GatherRule::cosine;
     std::uint64_t seed = 1;
 };
