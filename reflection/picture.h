@@ -18,41 +18,61 @@ struct Camera {
 };
 
 /// How a patch looks: its base colour texture varies the radiance that was solved for its mean colour.
+/// The radiance of a point = solved radiance x base_color x texture / mean_base_color, per channel.
 struct SurfaceLook {
     glm::vec3 base_color{1.f};                       ///< linear
     std::shared_ptr<const Image> base_color_texture; ///< linear RGB; null = none
-    glm::vec3 mean_base_color{1.f};                  ///< alpha-weighted mean that the solution was computed with
+    glm::vec3 mean_base_color{1.f};                  ///< alpha-weighted mean of base_color x texture, as the solution used it
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
-    bool smooth_normals = false;                     ///< bark: light with the interpolated normal
+    bool smooth_normals = false; ///< bark: light with the interpolated normal, and blend solved radiance across patches
 };
 
 /// A scene of patches with solved light as attributes. `reflection` knows nothing of trees or methods.
 struct ShadedScene {
     const PatchScene* patches = nullptr;
     std::vector<glm::vec3> normals;           ///< per position; may be empty
-    std::vector<SurfaceLook> looks;           ///< indexed by triangle_look
-    std::vector<std::uint32_t> triangle_look; ///< per triangle
+    std::vector<SurfaceLook> looks;           ///< indexed by triangle_look; empty = every patch has its mean colour
+    std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
     std::vector<glm::vec3> radiance_front, radiance_back; ///< per patch: all light (used where per-pixel shadows are off)
 };
 
+/// What lies under the scene in the picture.
+enum class PictureGround {
+    /// The scene's own ground if it has one. Else, where the environment has a lower half, that half stays and only takes the
+    /// scene's shadow and bounced light, near the scene. Else a plane of albedo 0.2 under the lowest point.
+    automatic,
+    none ///< nothing but the scene's own ground
+};
+
 struct PictureOptions {
     int width = 1280, height = 960;
-    int samples = 16;                 ///< camera rays a pixel
-    int light_samples = 1;            ///< shadow rays a light and camera ray
-    std::optional<float> exposure_stops; ///< empty = automatic
+    int samples = 16;      ///< camera rays a pixel
+    int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
+    std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
     bool pixel_shadows = true;
+    PictureGround ground = PictureGround::automatic;
     std::uint64_t seed = 1;
 };
 
-/// A camera that shows all of a scene, from a little above eye level.
+/// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's eyes beside a
+/// grown tree, some ground below, air around. Works at any size; a zero or non-finite box is taken as 1 m around its centre.
 Camera frame_scene(const Bounds& bounds, float aspect);
 
-/// Linear radiance picture, 3 channels. The ground is lit per pixel: lights shadow-tested, sky by hemisphere samples, tree light bounced in.
+/// Linear radiance picture, 3 channels, finite. The ground is lit per pixel: lights shadow-tested, sky and light from the tree
+/// gathered over the hemisphere at the nodes of a grid that is finer near the tree, and interpolated.
+/// The same bits for any number of threads. Throws InputError if sizes disagree, Stopped if the user stopped.
 Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment, const Camera& camera,
                      const PictureOptions& options, Progress& progress);
 
-/// Display-ready sRGB bytes (as 0..1 floats) from linear radiance: exposure (automatic: log-average to middle grey), filmic curve.
+/// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees.
+/// Metered like a camera: the geometric mean of luminance, the middle of the picture counting most, the darkest and brightest tenth
+/// left out, goes to middle grey (0.18); but never so high that the upper tenth of the picture would be blown out.
+float automatic_exposure_stops(const Image& radiance);
+
+/// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the filmic curve of
+/// Uchimura ("HDR theory and practice", CEDEC 2017: P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0) on every channel, then the sRGB curve.
+/// Any input gives finite output: NaN and negative values are black, infinity is white.
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops);
 
 } // namespace kokage

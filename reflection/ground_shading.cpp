@@ -1,0 +1,129 @@
+#include "reflection/ground_shading.h"
+#include "common/services/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kokage {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+const glm::vec3 kUp(0, 1, 0);
+
+/// Value noise in -1 … 1 on the integer lattice, C1 between nodes.
+float lattice_noise(glm::vec2 place, std::uint64_t octave) {
+    const glm::vec2 cell = glm::floor(place), t = place - cell;
+    const glm::vec2 s = t * t * (3.f - 2.f * t);
+    auto node = [&](float dx, float dy) {
+        const auto x = std::uint64_t(std::int64_t(cell.x + dx)), y = std::uint64_t(std::int64_t(cell.y + dy));
+        return float(hash64(hash64(hash64(octave) ^ x) ^ y) >> 40) * 0x1p-23f - 1.f;
+    };
+    return (1 - s.y) * ((1 - s.x) * node(0, 0) + s.x * node(1, 0)) + s.y * ((1 - s.x) * node(0, 1) + s.x * node(1, 1));
+}
+
+} // namespace
+
+float ground_variation(glm::vec2 place, float size, float finest, float spread) {
+    float sum = 0, amplitude = 0.5f;
+    glm::vec2 at = place / size;
+    float wavelength = size;
+    for (std::uint64_t octave = 0; octave < 12; ++octave) {
+        if (!(std::abs(at.x) < 1e9f && std::abs(at.y) < 1e9f) || wavelength < finest)
+            break; // beyond the lattice's exact integers, or finer than a pixel sees: an octave fades out before it is dropped
+        sum += amplitude * std::min(1.f, wavelength / finest - 1) * lattice_noise(at, octave);
+        amplitude *= 0.6f;
+        // Each octave is turned, so that the lattices don't line up.
+        at = 2.f * glm::vec2(0.8f * at.x - 0.6f * at.y, 0.6f * at.x + 0.8f * at.y) + 17.f;
+        wavelength *= 0.5f;
+    }
+    return 1 + spread * std::clamp(sum, -1.f, 1.f);
+}
+
+GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                             const Backdrop& backdrop, const LightChoice& lights, const Camera& camera,
+                             const PictureOptions& options, Progress& progress)
+    : queries_(queries), backdrop_(backdrop), lights_(lights) {
+    const Bounds bounds = bounds_of(*scene.patches);
+    if (scene.patches->ground) {
+        height_ = scene.patches->ground->height_m;
+        albedo_ = scene.patches->ground->albedo;
+    } else if (options.ground == PictureGround::automatic) {
+        if (environment.has_lower_half && scene.patches->triangles.empty())
+            return; // nothing that could cast a shadow
+        height_ = bounds.low.y;
+        if (!environment.has_lower_half)
+            albedo_ = glm::vec3(0.2f);
+    } else {
+        return;
+    }
+    const glm::vec3 half = 0.5f * (bounds.high - bounds.low);
+    centre_ = {bounds.centre().x, bounds.centre().z};
+    scene_radius_ = std::max({half.x, half.y, half.z});
+    haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - *height_));
+    if (!(haze_distance_ > 0))
+        haze_distance_ = 1;
+    light_.emplace(scene, queries, backdrop, *height_, progress);
+    backdrop_irradiance_ = light_->open_irradiance();
+    for (const DistantLight& light : environment.distant_lights)
+        for (const DistantLight::Texel& texel : light.texels)
+            backdrop_irradiance_ += texel.irradiance * std::max(0.f, texel.direction.y);
+}
+
+float GroundShading::distance(const glm::vec3& origin, const glm::vec3& direction) const {
+    if (!height_)
+        return kInfinity;
+    const float t = (*height_ - origin.y) / direction.y;
+    return t > 0 && std::isfinite(t) ? t : kInfinity;
+}
+
+glm::vec3 GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
+                                  ShadingScratch& scratch) const {
+    if (direction.y >= 0)
+        return glm::vec3(0.f);
+    const glm::vec3 point(origin.x + distance * direction.x, *height_, origin.z + distance * direction.z);
+    return albedo_ ? diffuse_plane(point, direction, distance, sample, scratch) : shadowed_backdrop(point, direction, sample, scratch);
+}
+
+glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample, ShadingScratch& scratch) const {
+    const Scattering scattering{kUp, albedo, glm::vec3(0.f)};
+    return albedo / kPi * light_->irradiance(point.x, point.z) +
+           light_from_lights(lights_, queries_, point, scattering, sample, scratch);
+}
+
+glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
+                                       ShadingScratch& scratch) const {
+    // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
+    const float clear = std::exp(-distance / haze_distance_);
+    glm::vec3 radiance(0.f);
+    if (clear > 1e-4f) {
+        // Soil varies; the variation shrinks to nothing as the albedo nears 1, where it could only lose energy.
+        const float spread = 0.3f * std::clamp(1 - std::max({albedo_->r, albedo_->g, albedo_->b}), 0.f, 1.f);
+        const float footprint = 0.002f * distance / std::max(-direction.y, 1e-3f);
+        const float variation = ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
+        radiance = clear * light_at(point, *albedo_ * variation, sample, scratch);
+    }
+    const glm::vec3 level = glm::normalize(glm::vec3(direction.x, 0.01f, direction.z) + glm::vec3(0, 1e-20f, 0));
+    return radiance + (1 - clear) * backdrop_.remainder(level);
+}
+
+glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+                                           ShadingScratch& scratch) const {
+    // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which it was photographed
+    // sees every point of the ground in the direction in which the photograph has it, so only the light on it must change:
+    // times (light with the scene) / (light without it). Far from the scene that tends to 1 and is made 1, because there the photograph
+    // shows things that stand, not ground.
+    const glm::vec3 seen = backdrop_.seen(direction);
+    const float away = glm::length(glm::vec2(point.x, point.z) - centre_) / std::max(scene_radius_, 1e-30f);
+    const float near = std::clamp((12 - away) / 8, 0.f, 1.f);
+    if (near <= 0)
+        return seen;
+    const glm::vec3 now = kPi * light_at(point, glm::vec3(1.f), sample, scratch);
+    glm::vec3 ratio(1.f);
+    for (std::size_t c = 0; c < 3; ++c)
+        if (backdrop_irradiance_[c] > 0)
+            ratio[c] = now[c] / backdrop_irradiance_[c];
+    return seen * (1.f + near * near * (3 - 2 * near) * (ratio - 1.f));
+}
+
+} // namespace kokage

@@ -1,0 +1,57 @@
+#pragma once
+// Which lights to test at a point that is shaded: all of them when they are few, else some by what they would contribute.
+#include "common/environment/environment.h"
+#include "common/types.h"
+
+#include <vector>
+
+namespace kokage {
+
+/// What a point scatters towards the viewer per unit of irradiance on a facing surface, as a function of the direction to the light.
+/// For a two-sided Lambertian side: cos/π times reflectance (light on the viewed side) or transmittance (light from behind).
+struct Scattering {
+    glm::vec3 normal; ///< unit, on the viewed side
+    glm::vec3 reflectance, transmittance;
+
+    glm::vec3 towards(const glm::vec3& direction_to_light) const {
+        const float cosine = glm::dot(normal, direction_to_light);
+        return (cosine > 0 ? reflectance * cosine : transmittance * -cosine) / kPi;
+    }
+};
+
+/// One shadow ray to trace, and what arrives if it is free.
+struct LightRay {
+    glm::vec3 direction;
+    float distance;      ///< infinite for distant lights
+    glm::vec3 radiance;  ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
+};
+
+/// Where in a pixel's set of samples we are, for stratification across the set.
+struct SampleIndex {
+    std::uint32_t index = 0, count = 1; ///< camera rays of the pixel
+    std::uint32_t pattern = 0;          ///< of the pixel
+};
+
+class LightChoice {
+  public:
+    /// The environment must outlive it.
+    LightChoice(const Environment& environment, int light_samples);
+
+    /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most two lights, or 2 x light_samples chosen by
+    /// systematic sampling of the lights' unshadowed contributions, so that strong lights are never missed and weak ones share.
+    /// `scratch` is working space of the caller.
+    void rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<LightRay>& rays,
+                 std::vector<float>& scratch) const;
+
+  private:
+    float contribution(std::size_t light, const glm::vec3& point, const Scattering& scattering) const;
+    void add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight, glm::vec2 u,
+                 std::vector<LightRay>& rays) const;
+
+    const Environment& environment_;
+    std::uint32_t light_samples_;
+    std::size_t light_count_; ///< distant lights first, then point lights
+    std::vector<float> sine_of_half_angle_;
+};
+
+} // namespace kokage

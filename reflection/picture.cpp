@@ -1,1 +1,0 @@
-#include "reflection/picture.h"

@@ -1,0 +1,100 @@
+#include "common/services/error.h"
+#include "reflection/picture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace kokage {
+namespace {
+
+constexpr float kMiddleGrey = 0.18f;
+constexpr float kHighlight = 2.5f; ///< where the curve has used nearly all of its white
+constexpr float kLeast = 1e-30f, kMost = 1e30f;
+
+void check_channels(const Image& image) {
+    if (image.channels < 3 && !image.empty())
+        throw InputError("tone mapping: the picture has " + std::to_string(image.channels) + " channels; it needs 3");
+}
+
+float finite(float value) { return value > 0 ? std::min(value, kMost) : 0.f; } // NaN compares false
+
+/// Uchimura, "HDR theory and practice" (CEDEC 2017), slides 112-116, with his defaults: a toe of power c, a straight middle of slope a
+/// from m on for the length l, and an exponential shoulder that ends at P.
+float filmic(float x) {
+    constexpr float P = 1, a = 1, m = 0.22f, l = 0.4f, c = 1.33f, b = 0;
+    constexpr float l0 = (P - m) * l / a, S0 = m + l0, S1 = m + a * l0, C2 = a * P / (P - S1);
+    const float toe = m * std::pow(x / m, c) + b, straight = m + a * (x - m), shoulder = P - (P - S1) * std::exp(-C2 * (x - S0) / P);
+    const float t = std::clamp(x / m, 0.f, 1.f), toe_share = 1 - t * t * (3 - 2 * t), shoulder_share = x >= S0 ? 1.f : 0.f;
+    const float toe_part = toe_share > 0 ? toe_share * toe : 0.f;
+    return toe_part + (1 - toe_share - shoulder_share) * (shoulder_share > 0 ? 0.f : straight) + shoulder_share * shoulder;
+}
+
+float srgb(float linear) {
+    return linear <= 0.0031308f ? 12.92f * linear : 1.055f * std::pow(linear, 1 / 2.4f) - 0.055f;
+}
+
+struct Metered {
+    float luminance;
+    float weight;
+};
+
+} // namespace
+
+float automatic_exposure_stops(const Image& radiance) {
+    check_channels(radiance);
+    std::vector<Metered> lit;
+    double total = 0;
+    for (int y = 0; y < radiance.height; ++y)
+        for (int x = 0; x < radiance.width; ++x) {
+            const float* pixel = radiance.at(x, y);
+            const float value = luminance({finite(pixel[0]), finite(pixel[1]), finite(pixel[2])});
+            if (value <= kLeast)
+                continue; // black surroundings are no reason to overexpose what is there
+            const float dx = 2 * (float(x) + 0.5f) / float(radiance.width) - 1, dy = 2 * (float(y) + 0.5f) / float(radiance.height) - 1;
+            const float weight = 0.15f + std::exp(-2.5f * (dx * dx + dy * dy));
+            lit.push_back({value, weight});
+            total += double(weight);
+        }
+    if (lit.empty())
+        return 0;
+    std::sort(lit.begin(), lit.end(), [](const Metered& a, const Metered& b) {
+        return a.luminance != b.luminance ? a.luminance < b.luminance : a.weight < b.weight;
+    });
+    double passed = 0, sum = 0, counted = 0;
+    float bright = lit.back().luminance;
+    bool bright_found = false;
+    for (const Metered& pixel : lit) {
+        const double share = (passed + 0.5 * double(pixel.weight)) / total;
+        if (share > 0.1 && share < 0.9) {
+            sum += double(pixel.weight) * std::log2(double(pixel.luminance));
+            counted += double(pixel.weight);
+        }
+        if (!bright_found && share >= 0.9) {
+            bright = pixel.luminance;
+            bright_found = true;
+        }
+        passed += double(pixel.weight);
+    }
+    const double key = counted > 0 ? sum / counted : std::log2(double(lit[lit.size() / 2].luminance));
+    return float(std::min(std::log2(double(kMiddleGrey)) - key, std::log2(double(kHighlight)) - std::log2(double(bright))));
+}
+
+Image tone_map(const Image& radiance, std::optional<float> exposure_stops) {
+    check_channels(radiance);
+    const float stops = exposure_stops ? *exposure_stops : automatic_exposure_stops(radiance);
+    if (!std::isfinite(stops))
+        throw InputError("exposure " + std::to_string(stops) + " stops: give a finite number, or none for automatic");
+    // In double: the dimmest radiance at the highest exposure still has a product.
+    const double scale = std::exp2(std::clamp(double(stops), -200.0, 200.0));
+    Image display(radiance.width, radiance.height, 3);
+    for (int y = 0; y < radiance.height; ++y)
+        for (int x = 0; x < radiance.width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const auto exposed = float(std::min(scale * double(finite(radiance.at(x, y)[c])), 1e6));
+                display.at(x, y)[c] = std::clamp(srgb(filmic(exposed)), 0.f, 1.f);
+            }
+    return display;
+}
+
+} // namespace kokage
