@@ -7,8 +7,8 @@
 namespace kokage {
 namespace {
 
-/// Cubic B-spline lookup, wrapping in u; rows outside [0, last_row] repeat the border row. A backdrop is enlarged tenfold in a
-/// picture, and bilinear interpolation would show its diamonds.
+/// Cubic B-spline lookup, wrapping in u; rows outside [0, last_row] repeat the border row. A backdrop is enlarged
+/// tenfold in a picture, and bilinear interpolation would show its diamonds.
 glm::vec3 smooth_lookup(const Image& image, const glm::vec3& direction, int last_row) {
     const glm::vec2 uv = lat_long_from_direction(direction);
     const float x = uv.x * float(image.width) - 0.5f;

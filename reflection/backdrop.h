@@ -12,7 +12,8 @@ class Backdrop {
     /// The environment must outlive it.
     explicit Backdrop(const Environment& environment);
 
-    /// Radiance without the split-off lights. Under a sky with no lower half, directions below the horizon see the horizon.
+    /// Radiance without the split-off lights. Under a sky with no lower half, directions below the horizon see the
+    /// horizon.
     glm::vec3 remainder(const glm::vec3& direction) const;
     /// Radiance as a camera sees it: remainder, bright regions at the pixels that they were cut from, discs of suns.
     /// Lights without a size can't be seen.

@@ -33,7 +33,8 @@ void set_pixel(Image& image, int x, int y, const glm::vec3& color) {
 double percentile(std::vector<float>& values, double share) {
     if (values.empty())
         return 0;
-    const auto rank = std::min(values.size() - 1, std::size_t(std::ceil(share * double(values.size()))) - (share > 0 ? 1 : 0));
+    const auto rank =
+        std::min(values.size() - 1, std::size_t(std::ceil(share * double(values.size()))) - (share > 0 ? 1 : 0));
     std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(rank), values.end());
     return double(values[rank]);
 }
@@ -72,10 +73,12 @@ DifferenceFigures figures(const std::vector<Pair>& pairs) {
 
 void check(const Image& a, const Image& b) {
     auto shape = [](const Image& image) {
-        return std::to_string(image.width) + " x " + std::to_string(image.height) + " with " + std::to_string(image.channels) + " channels";
+        return std::to_string(image.width) + " x " + std::to_string(image.height) + " with " +
+               std::to_string(image.channels) + " channels";
     };
     if (a.width != b.width || a.height != b.height || a.channels != b.channels)
-        throw InputError("compare: the first picture is " + shape(a) + ", the second " + shape(b) + "; give two of the same shape");
+        throw InputError("compare: the first picture is " + shape(a) + ", the second " + shape(b) +
+                         "; give two of the same shape");
     if (a.empty() || a.channels > 4)
         throw InputError("compare: the pictures are " + shape(a) + "; give pictures with pixels and 1 to 4 channels");
 }
@@ -119,7 +122,8 @@ ImageComparison compare_images(const Image& a, const Image& b) {
         result.per_channel[std::size_t(c)] = figures(channels[std::size_t(c)]);
 
     std::vector<float> finite_sizes;
-    std::copy_if(largest.begin(), largest.end(), std::back_inserter(finite_sizes), [](float size) { return size >= 0; });
+    std::copy_if(largest.begin(), largest.end(), std::back_inserter(finite_sizes),
+                 [](float size) { return size >= 0; });
     result.map_scale = float(percentile(finite_sizes, 0.99));
     if (result.map_scale == 0)
         result.map_scale = float(std::min(result.all.max, 3e38));
@@ -127,7 +131,8 @@ ImageComparison compare_images(const Image& a, const Image& b) {
     for (int y = 0; y < a.height; ++y)
         for (int x = 0; x < a.width; ++x) {
             const float size = largest[std::size_t(y) * std::size_t(a.width) + std::size_t(x)];
-            set_pixel(result.map, x, y, size < 0 ? kNotFiniteColor : inferno(result.map_scale > 0 ? size / result.map_scale : 0.f));
+            set_pixel(result.map, x, y,
+                      size < 0 ? kNotFiniteColor : inferno(result.map_scale > 0 ? size / result.map_scale : 0.f));
         }
     return result;
 }
@@ -144,8 +149,9 @@ std::string describe(const ImageComparison& comparison) {
     std::ostringstream line;
     line.precision(4);
     const DifferenceFigures& f = comparison.all;
-    line << "mean " << f.mean << ", rms " << f.rms << ", 95 % below " << f.p95 << ", max " << f.max << " at pixel (" << comparison.max_x
-         << ", " << comparison.max_y << "), bias " << f.bias << ", relative " << 100 * f.relative << " %";
+    line << "mean " << f.mean << ", rms " << f.rms << ", 95 % below " << f.p95 << ", max " << f.max << " at pixel ("
+         << comparison.max_x << ", " << comparison.max_y << "), bias " << f.bias << ", relative " << 100 * f.relative
+         << " %";
     if (comparison.skipped_values > 0)
         line << "; " << comparison.skipped_values << " values are not finite and not counted";
     return line.str();

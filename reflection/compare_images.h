@@ -22,12 +22,13 @@ struct ImageComparison {
     DifferenceFigures all;                        ///< over all pixels and channels
     std::array<DifferenceFigures, 4> per_channel; ///< the first `channels` are set
     int channels = 0;
-    int max_x = 0, max_y = 0;        ///< the first pixel, in raster order, that has all.max
-    std::size_t skipped_values = 0;  ///< not finite in a or b: in no figure
-    float map_scale = 0;             ///< |d| that has the map's brightest colour: the 99th percentile of a pixel's largest |d| (the maximum, if that is 0)
+    int max_x = 0, max_y = 0;       ///< the first pixel, in raster order, that has all.max
+    std::size_t skipped_values = 0; ///< not finite in a or b: in no figure
+    float map_scale = 0; ///< |d| that has the map's brightest colour: the 99th percentile of a pixel's largest |d| (the
+                         ///< maximum, if that is 0)
     /// Error map, sRGB ready for display: every pixel's largest |d| / map_scale through the colours of `inferno`
-    /// (even steps to the eye, also in grey): 0 = black, 0.25 = violet, 0.5 = red-purple, 0.75 = orange, 1 and above = pale yellow.
-    /// Pixels with values that are not finite are green.
+    /// (even steps to the eye, also in grey): 0 = black, 0.25 = violet, 0.5 = red-purple, 0.75 = orange, 1 and above =
+    /// pale yellow. Pixels with values that are not finite are green.
     Image map;
 };
 

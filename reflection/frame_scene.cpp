@@ -1,90 +1,139 @@
 #include "reflection/picture.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
+#include <limits>
 
 namespace kokage {
 namespace {
 
-constexpr double kFieldOfView = 0.6; ///< vertical, radians: a 35 mm lens on full frame held upright, about
-constexpr double kAirAbove = 0.90, kGroundBelow = 0.74, kAirBeside = 0.90; ///< how much of each half of the frame the scene fills
-constexpr double kEyeHeight = 0.17; ///< of the scene's size: a person beside a tree of ten metres
-constexpr double kAzimuth = 0.35;   ///< from +Z towards +X: a little to the side, so that symmetric things don't look flat
+constexpr double kFieldOfView = 0.6; ///< vertical, radians: about a 35 mm lens on full frame
+/// How much of each half of the frame the scene fills: above, below (ground in front shows its shadow) and beside the
+/// middle.
+constexpr double kFillAbove = 0.88, kFillBelow = 0.70, kFillBeside = 0.88;
+constexpr double kEyeHeight = 0.2; ///< of the scene's height: a person beside a tree of eight metres
+constexpr int kSupportDirections = 400;
 
-/// Where the camera stands and how it is tilted, in units of the scene, seen from `distance`.
+/// Where the camera stands, in units of the scene's size from the middle of its foot, and how it is turned.
 struct Stand {
     glm::dvec3 position;
-    double pitch;
+    double azimuth, pitch;
 };
 
 struct Extent {
-    double left = 0, right = 0, top = 0, bottom = 0; ///< in tangents of the angle from the view axis
+    double beside = 0, top = 0, bottom = 0; ///< in tangents of the angle from the view axis
 };
 
-Extent extent_of(const std::array<glm::dvec3, 8>& corners, const Stand& stand) {
-    const glm::dvec3 level(-std::sin(kAzimuth), 0, -std::cos(kAzimuth)), side(std::cos(kAzimuth), 0, -std::sin(kAzimuth));
-    Extent extent{1e9, -1e9, -1e9, 1e9};
-    for (const glm::dvec3& corner : corners) {
-        const glm::dvec3 offset = corner - stand.position;
-        const double ahead = glm::dot(offset, level), up = offset.y;
-        const double depth = ahead * std::cos(stand.pitch) + up * std::sin(stand.pitch);
+constexpr Extent kBehindTheCamera{1e9, 1e9, -1e9};
+
+Extent extent_of(const std::vector<glm::dvec3>& points, const Stand& stand) {
+    const double sine = std::sin(stand.azimuth), cosine = std::cos(stand.azimuth);
+    const double tilt_up = std::sin(stand.pitch), tilt_ahead = std::cos(stand.pitch);
+    Extent extent{0, -1e9, 1e9};
+    for (const glm::dvec3& point : points) {
+        const glm::dvec3 offset = point - stand.position;
+        const double ahead = -sine * offset.x - cosine * offset.z, side = cosine * offset.x - sine * offset.z;
+        const double depth = ahead * tilt_ahead + offset.y * tilt_up;
         if (depth <= 1e-6)
-            return {-1e9, 1e9, 1e9, -1e9}; // behind the camera: not in any frame
-        const double x = glm::dot(offset, side) / depth, y = (up * std::cos(stand.pitch) - ahead * std::sin(stand.pitch)) / depth;
-        extent = {std::min(extent.left, x), std::max(extent.right, x), std::max(extent.top, y), std::min(extent.bottom, y)};
+            return kBehindTheCamera;
+        const double y = (offset.y * tilt_ahead - ahead * tilt_up) / depth;
+        extent = {std::max(extent.beside, std::abs(side) / depth), std::max(extent.top, y), std::min(extent.bottom, y)};
     }
     return extent;
 }
 
-/// The pitch that puts the highest corner where kAirAbove wants it: by bisection, as a higher pitch lowers what is seen.
-double pitch_for_top(const std::array<glm::dvec3, 8>& corners, const glm::dvec3& position, double tangent) {
+/// The pitch that puts the highest point where it should be: by bisection, as tilting the camera up lowers all that it
+/// sees.
+double pitch_for_top(const std::vector<glm::dvec3>& points, Stand stand, double top) {
     double low = -1.2, high = 1.2;
-    for (int k = 0; k < 50; ++k) {
-        const double middle = 0.5 * (low + high);
-        (extent_of(corners, {position, middle}).top > kAirAbove * tangent ? low : high) = middle;
+    for (int k = 0; k < 40; ++k) {
+        stand.pitch = 0.5 * (low + high);
+        (extent_of(points, stand).top > top ? low : high) = stand.pitch;
     }
     return 0.5 * (low + high);
 }
 
-} // namespace
-
-Camera frame_scene(const Bounds& bounds, float aspect) {
-    const glm::dvec3 low(bounds.low), high(bounds.high);
-    glm::dvec3 centre = 0.5 * (low + high), half = 0.5 * (high - low);
-    const double size = std::max({2 * half.y, 2 * half.x, 2 * half.z});
-    if (!(size > 0) || !std::isfinite(size) || !std::isfinite(glm::dot(centre, glm::dvec3(1.0))))
-        return frame_scene({glm::vec3(-0.5f, 0.f, -0.5f), glm::vec3(0.5f, 1.f, 0.5f)}, aspect);
-    half /= size;
-    std::array<glm::dvec3, 8> corners; // in units of size, the middle of the scene's foot at the origin
-    for (std::size_t k = 0; k < 8; ++k)
-        corners[k] = {k & 1 ? half.x : -half.x, k & 2 ? 2 * half.y : 0, k & 4 ? half.z : -half.z};
-
-    const double eye = std::max(kEyeHeight * 2 * half.y, 0.06) + 0.1 * std::max(0.0, 0.6 - 2 * half.y);
-    const double tangent = std::tan(kFieldOfView / 2), wide = tangent * (std::isfinite(aspect) && aspect > 0 ? double(aspect) : 1);
+/// Stands as near as the points allow. `points`: in the scene's units, relative to `foot`; `height`: of the highest.
+Camera stand_before(const std::vector<glm::dvec3>& points, double height, const glm::dvec3& foot, double size,
+                    float aspect, double azimuth) {
+    const double tangent = std::tan(kFieldOfView / 2);
+    const double wide = tangent * (std::isfinite(aspect) && aspect > 0 ? double(aspect) : 1);
+    // Low, wide things (a fern, a row of trees) are looked at from a little higher than a tree.
+    const double eye = kEyeHeight * height + 0.15 * std::max(0.0, 0.7 - height);
     auto stand_at = [&](double distance) {
-        const glm::dvec3 position(distance * std::sin(kAzimuth), eye, distance * std::cos(kAzimuth));
-        return Stand{position, pitch_for_top(corners, position, tangent)};
+        Stand stand{{distance * std::sin(azimuth), eye, distance * std::cos(azimuth)}, azimuth, 0};
+        stand.pitch = pitch_for_top(points, stand, kFillAbove * tangent);
+        return stand;
     };
-    auto fits = [&](const Extent& extent) {
-        return extent.bottom >= -kGroundBelow * tangent && extent.top <= (kAirAbove + 1e-6) * tangent &&
-               std::max(-extent.left, extent.right) <= kAirBeside * wide;
-    };
-    double near = 0.3, far = 1e4;
-    for (int k = 0; k < 60; ++k) {
+    double near = 0.05, far = 1e4;
+    for (int k = 0; k < 40; ++k) {
         const double middle = std::sqrt(near * far);
-        (fits(extent_of(corners, stand_at(middle))) ? far : near) = middle;
+        const Extent extent = extent_of(points, stand_at(middle));
+        const bool fits = extent.bottom >= -kFillBelow * tangent && extent.top <= (kFillAbove + 1e-6) * tangent &&
+                          extent.beside <= kFillBeside * wide;
+        (fits ? far : near) = middle;
     }
     const Stand stand = stand_at(far);
-
-    const glm::dvec3 foot(centre.x, low.y, centre.z);
-    const glm::dvec3 forward(-std::sin(kAzimuth) * std::cos(stand.pitch), std::sin(stand.pitch),
-                             -std::cos(kAzimuth) * std::cos(stand.pitch));
+    const glm::dvec3 forward(-std::sin(azimuth) * std::cos(stand.pitch), std::sin(stand.pitch),
+                             -std::cos(azimuth) * std::cos(stand.pitch));
     Camera camera;
     camera.position = foot + size * stand.position;
     camera.target = foot + size * (stand.position + far * forward);
     camera.vertical_field_of_view = float(kFieldOfView);
     return camera;
+}
+
+Camera frame_points(const std::vector<glm::vec3>& points, const Bounds& bounds, float aspect, double azimuth) {
+    const glm::dvec3 low(bounds.low), extent = glm::dvec3(bounds.high) - low;
+    const double size = std::max({extent.x, extent.y, extent.z});
+    if (!(size > 0) || !std::isfinite(size) || !std::isfinite(glm::dot(low, glm::dvec3(1.0))))
+        return frame_scene(Bounds{glm::vec3(-0.5f, 0.f, -0.5f), glm::vec3(0.5f, 1.f, 0.5f)}, aspect, float(azimuth));
+    const glm::dvec3 foot(low.x + 0.5 * extent.x, low.y, low.z + 0.5 * extent.z);
+    std::vector<glm::dvec3> scaled;
+    for (const glm::vec3& point : points)
+        scaled.push_back((glm::dvec3(point) - foot) / size);
+    return stand_before(scaled, extent.y / size, foot, size, aspect, azimuth);
+}
+
+} // namespace
+
+Camera frame_scene(const Bounds& bounds, float aspect, float azimuth) {
+    std::vector<glm::vec3> corners;
+    for (unsigned k = 0; k < 8; ++k)
+        corners.emplace_back(k & 1 ? bounds.high.x : bounds.low.x, k & 2 ? bounds.high.y : bounds.low.y,
+                             k & 4 ? bounds.high.z : bounds.low.z);
+    return frame_points(corners, bounds, aspect, double(azimuth));
+}
+
+Camera frame_scene(const PatchScene& scene, float aspect, float azimuth) {
+    // The farthest corners in many directions stand for all: what is between them is inside their hull.
+    const Bounds bounds = bounds_of(scene);
+    std::vector<glm::vec3> support;
+    for (int k = 0; k < kSupportDirections && !scene.triangles.empty(); ++k) {
+        const float y = 1 - 2 * (float(k) + 0.5f) / kSupportDirections, ring = std::sqrt(1 - y * y),
+                    turn = 2.39996323f * float(k);
+        const glm::vec3 direction(ring * std::cos(turn), y, ring * std::sin(turn));
+        float farthest = -std::numeric_limits<float>::infinity();
+        support.emplace_back(bounds.low);
+        for (const glm::uvec3& triangle : scene.triangles)
+            for (std::size_t c = 0; c < 3; ++c)
+                if (const glm::vec3& p = scene.positions[triangle[c]]; glm::dot(p - bounds.low, direction) > farthest) {
+                    farthest = glm::dot(p - bounds.low, direction);
+                    support.back() = p;
+                }
+    }
+    return frame_points(support, bounds, aspect, double(azimuth));
+}
+
+float photographers_azimuth(const Environment& environment) {
+    const DistantLight* main = nullptr;
+    for (const DistantLight& light : environment.distant_lights)
+        if (light.direction.y > 0 && (!main || luminance(light.irradiance) > luminance(main->irradiance)))
+            main = &light;
+    constexpr float kDefault = 0.35f, kFromLight = 1.75f; // a hundred degrees: from the side and a little behind
+    if (!main || !(glm::length(glm::vec2(main->direction.x, main->direction.z)) > 1e-6f))
+        return kDefault;
+    return std::atan2(main->direction.x, main->direction.z) + kFromLight;
 }
 
 } // namespace kokage

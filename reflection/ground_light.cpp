@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kNodes = 40;
 constexpr int kLevels = 6;
-constexpr float kReach = 8;  ///< of the coarsest grid, in scene radii
+constexpr float kReach = 8;    ///< of the coarsest grid, in scene radii
 constexpr float kBlend = 0.2f; ///< outer share of a grid that fades into the next
 constexpr std::uint32_t kDirections = 512;
 constexpr std::uint32_t kOpenDirections = 1u << 16;
@@ -129,7 +129,8 @@ void GroundLight::gather(const ShadedScene& scene, const RayQueries& queries, co
                 const bool front = glm::dot(directions[k], hit.geometric_normal) < 0;
                 change += glm::dvec3((front ? scene.radiance_front[patch] : scene.radiance_back[patch]) - sky[k]);
             }
-            level.nodes[std::size_t(nodes[n].row * kNodes + nodes[n].column)] = glm::vec3(change * (kPiDouble / kDirections));
+            level.nodes[std::size_t(nodes[n].row * kNodes + nodes[n].column)] =
+                glm::vec3(change * (kPiDouble / kDirections));
         }
         progress.advance(end - begin);
     });

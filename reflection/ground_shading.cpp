@@ -30,7 +30,8 @@ float ground_variation(glm::vec2 place, float size, float finest, float spread) 
     float wavelength = size;
     for (std::uint64_t octave = 0; octave < 12; ++octave) {
         if (!(std::abs(at.x) < 1e9f && std::abs(at.y) < 1e9f) || wavelength < finest)
-            break; // beyond the lattice's exact integers, or finer than a pixel sees: an octave fades out before it is dropped
+            break; // beyond the lattice's exact integers, or finer than a pixel sees: an octave fades out before it is
+                   // dropped
         sum += amplitude * std::min(1.f, wavelength / finest - 1) * lattice_noise(at, octave);
         amplitude *= 0.6f;
         // Each octave is turned, so that the lattices don't line up.
@@ -77,22 +78,24 @@ float GroundShading::distance(const glm::vec3& origin, const glm::vec3& directio
     return t > 0 && std::isfinite(t) ? t : kInfinity;
 }
 
-glm::vec3 GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
-                                  ShadingScratch& scratch) const {
+glm::vec3 GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
+                                  SampleIndex sample, ShadingScratch& scratch) const {
     if (direction.y >= 0)
         return glm::vec3(0.f);
     const glm::vec3 point(origin.x + distance * direction.x, *height_, origin.z + distance * direction.z);
-    return albedo_ ? diffuse_plane(point, direction, distance, sample, scratch) : shadowed_backdrop(point, direction, sample, scratch);
+    return albedo_ ? diffuse_plane(point, direction, distance, sample, scratch)
+                   : shadowed_backdrop(point, direction, sample, scratch);
 }
 
-glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample, ShadingScratch& scratch) const {
+glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
+                                  ShadingScratch& scratch) const {
     const Scattering scattering{kUp, albedo, glm::vec3(0.f)};
     return albedo / kPi * light_->irradiance(point.x, point.z) +
            light_from_lights(lights_, queries_, point, scattering, sample, scratch);
 }
 
-glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
-                                       ShadingScratch& scratch) const {
+glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,
+                                       SampleIndex sample, ShadingScratch& scratch) const {
     // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
     const float clear = std::exp(-distance / haze_distance_);
     glm::vec3 radiance(0.f);
@@ -100,7 +103,8 @@ glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& 
         // Soil varies; the variation shrinks to nothing as the albedo nears 1, where it could only lose energy.
         const float spread = 0.3f * std::clamp(1 - std::max({albedo_->r, albedo_->g, albedo_->b}), 0.f, 1.f);
         const float footprint = 0.002f * distance / std::max(-direction.y, 1e-3f);
-        const float variation = ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
+        const float variation =
+            ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
         radiance = clear * light_at(point, *albedo_ * variation, sample, scratch);
     }
     const glm::vec3 level = glm::normalize(glm::vec3(direction.x, 0.01f, direction.z) + glm::vec3(0, 1e-20f, 0));
@@ -109,10 +113,10 @@ glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& 
 
 glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
                                            ShadingScratch& scratch) const {
-    // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which it was photographed
-    // sees every point of the ground in the direction in which the photograph has it, so only the light on it must change:
-    // times (light with the scene) / (light without it). Far from the scene that tends to 1 and is made 1, because there the photograph
-    // shows things that stand, not ground.
+    // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which
+    // it was photographed sees every point of the ground in the direction in which the photograph has it, so only the
+    // light on it must change: times (light with the scene) / (light without it). Far from the scene that tends to 1
+    // and is made 1, because there the photograph shows things that stand, not ground.
     const glm::vec3 seen = backdrop_.seen(direction);
     const float away = glm::length(glm::vec2(point.x, point.z) - centre_) / std::max(scene_radius_, 1e-30f);
     const float near = std::clamp((12 - away) / 8, 0.f, 1.f);

@@ -10,8 +10,9 @@ namespace kokage {
 class GroundShading {
   public:
     /// All must outlive it.
-    GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment, const Backdrop& backdrop,
-                  const LightChoice& lights, const Camera& camera, const PictureOptions& options, Progress& progress);
+    GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                  const Backdrop& backdrop, const LightChoice& lights, const Camera& camera,
+                  const PictureOptions& options, Progress& progress);
 
     /// False if the picture has no ground.
     bool exists() const { return height_.has_value(); }
@@ -24,8 +25,10 @@ class GroundShading {
   private:
     glm::vec3 diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
                             ShadingScratch& scratch) const;
-    glm::vec3 shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample, ShadingScratch& scratch) const;
-    glm::vec3 light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample, ShadingScratch& scratch) const;
+    glm::vec3 shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+                                ShadingScratch& scratch) const;
+    glm::vec3 light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
+                       ShadingScratch& scratch) const;
 
     const RayQueries& queries_;
     const Backdrop& backdrop_;
@@ -38,7 +41,8 @@ class GroundShading {
     float scene_radius_ = 1, haze_distance_ = 1;
 };
 
-/// A factor with mean 1 and at most +-spread that varies over the ground as soil does, at all scales from `size` down to `finest`.
+/// A factor with mean 1 and at most +-spread that varies over the ground as soil does, at all scales from `size` down
+/// to `finest`.
 float ground_variation(glm::vec2 place, float size, float finest, float spread);
 
 } // namespace kokage

@@ -12,7 +12,9 @@ constexpr std::size_t kFewLights = 2;
 /// Keeps the inverse square finite where a point light touches a surface.
 constexpr float kLeastSquaredDistance = 1e-20f;
 
-float largest(const glm::vec3& rgb) { return std::max({rgb.r, rgb.g, rgb.b}); }
+float largest(const glm::vec3& rgb) {
+    return std::max({rgb.r, rgb.g, rgb.b});
+}
 
 } // namespace
 
@@ -36,8 +38,8 @@ float LightChoice::contribution(std::size_t light, const glm::vec3& point, const
     return largest(lamp.intensity / squared * scattering.towards(offset / std::sqrt(squared)));
 }
 
-void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight, glm::vec2 u,
-                          std::vector<LightRay>& rays) const {
+void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight,
+                          glm::vec2 u, std::vector<LightRay>& rays) const {
     LightRay ray;
     if (light < environment_.distant_lights.size()) {
         const LightSample sample = sample_light(environment_.distant_lights[light], u.x, u.y);
@@ -53,8 +55,8 @@ void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scatt
         rays.push_back(ray);
 }
 
-void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<LightRay>& rays,
-                          std::vector<float>& scratch) const {
+void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample,
+                          std::vector<LightRay>& rays, std::vector<float>& scratch) const {
     rays.clear();
     if (light_count_ == 0 || largest(scattering.reflectance + scattering.transmittance) <= 0)
         return;
@@ -63,7 +65,8 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
         for (std::size_t light = 0; light < light_count_; ++light)
             for (std::uint32_t k = 0; k < light_samples_; ++k)
                 add_ray(light, point, scattering, 1.f / float(light_samples_),
-                        multi_jittered(sample.index * light_samples_ + k, count, sample.pattern + std::uint32_t(light)), rays);
+                        multi_jittered(sample.index * light_samples_ + k, count, sample.pattern + std::uint32_t(light)),
+                        rays);
         return;
     }
     scratch.resize(light_count_);
@@ -72,8 +75,8 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
         total += scratch[light] = std::min(contribution(light, point, scattering), 1e30f);
     if (total <= 0)
         return;
-    // Systematic sampling: one random start, then equal steps through the running sum. A light with the share p of the sum is
-    // chosen floor(p picks) or ceil(p picks) times, and each choice weighs 1 / (picks p).
+    // Systematic sampling: one random start, then equal steps through the running sum. A light with the share p of the
+    // sum is chosen floor(p picks) or ceil(p picks) times, and each choice weighs 1 / (picks p).
     const std::uint32_t picks = 2 * light_samples_;
     const double start = stratified(sample.index, sample.count, sample.pattern ^ 0x5bd1e995u), step = total / picks;
     double sum = 0;

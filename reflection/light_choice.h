@@ -1,5 +1,6 @@
 #pragma once
-// Which lights to test at a point that is shaded: all of them when they are few, else some by what they would contribute.
+// Which lights to test at a point that is shaded: all of them when they are few, else some by what they would
+// contribute.
 #include "common/environment/environment.h"
 #include "common/types.h"
 
@@ -7,8 +8,9 @@
 
 namespace kokage {
 
-/// What a point scatters towards the viewer per unit of irradiance on a facing surface, as a function of the direction to the light.
-/// For a two-sided Lambertian side: cos/π times reflectance (light on the viewed side) or transmittance (light from behind).
+/// What a point scatters towards the viewer per unit of irradiance on a facing surface, as a function of the direction
+/// to the light. For a two-sided Lambertian side: cos/π times reflectance (light on the viewed side) or transmittance
+/// (light from behind).
 struct Scattering {
     glm::vec3 normal; ///< unit, on the viewed side
     glm::vec3 reflectance, transmittance;
@@ -22,8 +24,8 @@ struct Scattering {
 /// One shadow ray to trace, and what arrives if it is free.
 struct LightRay {
     glm::vec3 direction;
-    float distance;      ///< infinite for distant lights
-    glm::vec3 radiance;  ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
+    float distance;     ///< infinite for distant lights
+    glm::vec3 radiance; ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
 };
 
 /// Where in a pixel's set of samples we are, for stratification across the set.
@@ -37,9 +39,9 @@ class LightChoice {
     /// The environment must outlive it.
     LightChoice(const Environment& environment, int light_samples);
 
-    /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most two lights, or 2 x light_samples chosen by
-    /// systematic sampling of the lights' unshadowed contributions, so that strong lights are never missed and weak ones share.
-    /// `scratch` is working space of the caller.
+    /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most two lights, or 2 x
+    /// light_samples chosen by systematic sampling of the lights' unshadowed contributions, so that strong lights are
+    /// never missed and weak ones share. `scratch` is working space of the caller.
     void rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<LightRay>& rays,
                  std::vector<float>& scratch) const;
 

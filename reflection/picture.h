@@ -22,7 +22,7 @@ struct Camera {
 struct SurfaceLook {
     glm::vec3 base_color{1.f};                       ///< linear
     std::shared_ptr<const Image> base_color_texture; ///< linear RGB; null = none
-    glm::vec3 mean_base_color{1.f};                  ///< alpha-weighted mean of base_color x texture, as the solution used it
+    glm::vec3 mean_base_color{1.f}; ///< alpha-weighted mean of base_color x texture, as the solution used it
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     bool smooth_normals = false; ///< bark: light with the interpolated normal, and blend solved radiance across patches
 };
@@ -34,12 +34,14 @@ struct ShadedScene {
     std::vector<SurfaceLook> looks;           ///< indexed by triangle_look; empty = every patch has its mean colour
     std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
-    std::vector<glm::vec3> radiance_front, radiance_back; ///< per patch: all light (used where per-pixel shadows are off)
+    std::vector<glm::vec3> radiance_front,
+        radiance_back; ///< per patch: all light (used where per-pixel shadows are off)
 };
 
 /// What lies under the scene in the picture.
 enum class PictureGround {
-    /// The scene's own ground if it has one. Else, where the environment has a lower half, that half stays and only takes the
+    /// The scene's own ground if it has one. Else, where the environment has a lower half, that half stays and only
+    /// takes the
     /// scene's shadow and bounced light, near the scene. Else a plane of albedo 0.2 under the lowest point.
     automatic,
     none ///< nothing but the scene's own ground
@@ -55,24 +57,33 @@ struct PictureOptions {
     std::uint64_t seed = 1;
 };
 
-/// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's eyes beside a
-/// grown tree, some ground below, air around. Works at any size; a zero or non-finite box is taken as 1 m around its centre.
-Camera frame_scene(const Bounds& bounds, float aspect);
+/// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's
+/// eyes beside a grown tree, some ground in front, air around. It stands at `azimuth` (radians from +Z towards +X) seen
+/// from the scene. Works at any size; a zero or non-finite box is taken as 1 m at the origin.
+Camera frame_scene(const PatchScene& scene, float aspect, float azimuth = 0.35f);
+/// The same for a box, all of whose corners are shown.
+Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
 
-/// Linear radiance picture, 3 channels, finite. The ground is lit per pixel: lights shadow-tested, sky and light from the tree
-/// gathered over the hemisphere at the nodes of a grid that is finer near the tree, and interpolated.
-/// The same bits for any number of threads. Throws InputError if sizes disagree, Stopped if the user stopped.
-Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment, const Camera& camera,
-                     const PictureOptions& options, Progress& progress);
+/// Where a photographer would stand: the strongest light above the horizon comes from the side and a little from behind
+/// the scene, so that leaves glow and shadows give depth. 0.35 if there is no such light or it stands overhead.
+float photographers_azimuth(const Environment& environment);
+
+/// Linear radiance picture, 3 channels, finite. The ground is lit per pixel: lights shadow-tested, sky and light from
+/// the tree gathered over the hemisphere at the nodes of a grid that is finer near the tree, and interpolated. The same
+/// bits for any number of threads. Throws InputError if sizes disagree, Stopped if the user stopped.
+Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                     const Camera& camera, const PictureOptions& options, Progress& progress);
 
 /// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees.
-/// Metered like a camera: the geometric mean of luminance, the middle of the picture counting most, the darkest and brightest tenth
-/// left out, goes to middle grey (0.18); but never so high that the upper tenth of the picture would be blown out.
+/// Metered like a camera: the geometric mean of luminance, the middle of the picture counting most, the darkest and
+/// brightest tenth left out, goes to middle grey (0.18); but never so high that the upper tenth of the picture would be
+/// blown out.
 float automatic_exposure_stops(const Image& radiance);
 
-/// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the filmic curve of
-/// Uchimura ("HDR theory and practice", CEDEC 2017: P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0) on every channel, then the sRGB curve.
-/// Any input gives finite output: NaN and negative values are black, infinity is white.
+/// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the
+/// filmic curve of Uchimura ("HDR theory and practice", CEDEC 2017: P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0)
+/// on every channel, then the sRGB curve. Any input gives finite output: NaN and negative values are black, infinity is
+/// white.
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops);
 
 } // namespace kokage

@@ -48,9 +48,10 @@ void check(const PictureOptions& options) {
     if (options.width < 1 || options.height < 1 || double(options.width) * options.height > 1e9)
         throw InputError("picture: " + std::to_string(options.width) + " x " + std::to_string(options.height) +
                          " pixels; give 1 to 1e9 in all");
-    if (options.samples < 1 || options.samples > (1 << 16) || options.light_samples < 1 || options.light_samples > (1 << 12))
-        throw InputError("picture: " + std::to_string(options.samples) + " samples and " + std::to_string(options.light_samples) +
-                         " light samples; give 1 to 65536 and 1 to 4096");
+    if (options.samples < 1 || options.samples > (1 << 16) || options.light_samples < 1 ||
+        options.light_samples > (1 << 12))
+        throw InputError("picture: " + std::to_string(options.samples) + " samples and " +
+                         std::to_string(options.light_samples) + " light samples; give 1 to 65536 and 1 to 4096");
 }
 
 /// Everything that a ray needs to become a colour.
@@ -60,7 +61,8 @@ struct Renderer {
     const SurfaceShading& surfaces;
     const GroundShading& ground;
 
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample, ShadingScratch& scratch) const {
+    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
+                       ShadingScratch& scratch) const {
         RayHit hit;
         const float ground_distance = ground.distance(origin, direction);
         const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
@@ -78,8 +80,8 @@ std::uint32_t pattern_of(std::uint64_t seed, std::uint64_t pixel, std::uint64_t 
 
 } // namespace
 
-Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment, const Camera& camera,
-                     const PictureOptions& options, Progress& progress) {
+Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                     const Camera& camera, const PictureOptions& options, Progress& progress) {
     check(options);
     if (!scene.patches)
         throw InputError("picture: there is no scene of patches");
@@ -106,9 +108,10 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
                 glm::dvec3 sum(0.0);
                 for (std::uint32_t s = 0; s < samples; ++s) {
                     const glm::vec2 u = multi_jittered(s, samples, film_pattern);
-                    const glm::vec3 direction =
-                        frame.direction(float(x) + 0.5f + pixel_filter_offset(u.x), float(y) + 0.5f + pixel_filter_offset(u.y));
-                    const glm::dvec3 seen = renderer.radiance(frame.position, direction, {s, samples, light_pattern}, scratch);
+                    const glm::vec3 direction = frame.direction(float(x) + 0.5f + pixel_filter_offset(u.x),
+                                                                float(y) + 0.5f + pixel_filter_offset(u.y));
+                    const glm::dvec3 seen =
+                        renderer.radiance(frame.position, direction, {s, samples, light_pattern}, scratch);
                     for (std::size_t c = 0; c < 3; ++c) // what overflowed on the way is as bright as a picture can hold
                         sum[c] += seen[c] < kLargestRadiance ? std::max(seen[c], 0.0) : kLargestRadiance;
                 }

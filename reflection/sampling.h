@@ -1,21 +1,24 @@
 #pragma once
-// Well-spread sample points whose value depends on (index, count, pattern) alone, so that any thread can make any of them.
+// Well-spread sample points whose value depends on (index, count, pattern) alone, so that any thread can make any of
+// them.
 #include "common/types.h"
 
 namespace kokage {
 
-/// Point `index` of a correlated multi-jittered set of `count` points in [0,1)^2 (Kensler, "Correlated Multi-Jittered Sampling",
-/// Pixar Technical Memo 13-01, 2013). Different patterns are independent, also in the order of their points.
+/// Point `index` of a correlated multi-jittered set of `count` points in [0,1)^2 (Kensler, "Correlated Multi-Jittered
+/// Sampling", Pixar Technical Memo 13-01, 2013). Different patterns are independent, also in the order of their points.
 glm::vec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t pattern);
 
 /// Point `index` of `count` jittered strata of [0,1), in an order that depends on the pattern.
 float stratified(std::uint32_t index, std::uint32_t count, std::uint32_t pattern);
 
-/// Cosine-distributed direction about +Y from a point of the unit square, by the concentric map (Shirley and Chiu 1997).
+/// Cosine-distributed direction about +Y from a point of the unit square, by the concentric map (Shirley and Chiu
+/// 1997).
 glm::vec3 cosine_direction(glm::vec2 u);
 
-/// Offset in pixels, within +-1.5, distributed as the Blackman-Harris window: drawing camera rays by it filters the picture with
-/// that window, without negative lobes and without neighbours sharing samples (filter importance sampling, Ernst et al. 2006).
+/// Offset in pixels, within +-1.5, distributed as the Blackman-Harris window: drawing camera rays by it filters the
+/// picture with that window, without negative lobes and without neighbours sharing samples (filter importance sampling,
+/// Ernst et al. 2006).
 float pixel_filter_offset(float u);
 
 /// Weights of the four nodes round a place at fraction t between the second and the third: the uniform cubic B-spline.

@@ -68,18 +68,20 @@ glm::vec3 light_from_lights(const LightChoice& lights, const RayQueries& queries
     return sum;
 }
 
-SurfaceShading::SurfaceShading(const ShadedScene& scene, const RayQueries& queries, const LightChoice& lights, bool pixel_shadows)
+SurfaceShading::SurfaceShading(const ShadedScene& scene, const RayQueries& queries, const LightChoice& lights,
+                               bool pixel_shadows)
     : scene_(scene), queries_(queries), lights_(lights), pixel_shadows_(pixel_shadows) {
     const PatchScene& patches = *scene.patches;
     if (!scene.looks.empty()) {
         check_size(scene.triangle_look.size(), patches.triangles.size(), "triangle looks");
         for (std::uint32_t look : scene.triangle_look)
             if (look >= scene.looks.size())
-                throw InputError("picture: a triangle names look " + std::to_string(look) + " of " + std::to_string(scene.looks.size()));
+                throw InputError("picture: a triangle names look " + std::to_string(look) + " of " +
+                                 std::to_string(scene.looks.size()));
         for (const SurfaceLook& look : scene.looks)
             if (look.base_color_texture && (look.base_color_texture->channels < 3 || look.base_color_texture->empty()))
-                throw InputError("picture: a base colour texture has " + std::to_string(look.base_color_texture->channels) +
-                                 " channels; it needs at least 3");
+                throw InputError("picture: a base colour texture has " +
+                                 std::to_string(look.base_color_texture->channels) + " channels; it needs at least 3");
     }
     if (!scene.normals.empty())
         check_size(scene.normals.size(), patches.positions.size(), "normals");
@@ -111,7 +113,8 @@ void SurfaceShading::smooth_solution() {
         if (!scene_.looks[scene_.triangle_look[t]].smooth_normals)
             continue;
         const glm::uvec3 triangle = patches.triangles[t];
-        const glm::dvec3 a = patches.positions[triangle.x], b = patches.positions[triangle.y], c = patches.positions[triangle.z];
+        const glm::dvec3 a = patches.positions[triangle.x], b = patches.positions[triangle.y],
+                         c = patches.positions[triangle.z];
         const double area = glm::length(glm::cross(b - a, c - a));
         const std::uint32_t patch = patches.triangle_patch[t];
         for (int k = 0; k < 3; ++k) {
@@ -138,7 +141,8 @@ glm::vec3 SurfaceShading::texture_factor(std::uint32_t triangle, const glm::vec3
     if (!look.base_color_texture || patches.uvs.empty())
         return glm::vec3(1.f);
     const glm::uvec3 corners = patches.triangles[triangle];
-    const glm::vec2 uv = weights.x * patches.uvs[corners.x] + weights.y * patches.uvs[corners.y] + weights.z * patches.uvs[corners.z];
+    const glm::vec2 uv =
+        weights.x * patches.uvs[corners.x] + weights.y * patches.uvs[corners.y] + weights.z * patches.uvs[corners.z];
     const glm::vec3 color = look.base_color * texture_color(*look.base_color_texture, uv, look.wrap_u, look.wrap_v);
     glm::vec3 factor(1.f);
     for (std::size_t c = 0; c < 3; ++c)
@@ -147,8 +151,8 @@ glm::vec3 SurfaceShading::texture_factor(std::uint32_t triangle, const glm::vec3
     return factor;
 }
 
-glm::vec3 SurfaceShading::radiance(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit, SampleIndex sample,
-                                   ShadingScratch& scratch) const {
+glm::vec3 SurfaceShading::radiance(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit,
+                                   SampleIndex sample, ShadingScratch& scratch) const {
     const PatchScene& patches = *scene_.patches;
     const std::uint32_t patch = patches.triangle_patch[hit.triangle];
     const glm::uvec3 corners = patches.triangles[hit.triangle];

@@ -1,5 +1,6 @@
 #pragma once
-// The radiance that a shaded surface sends to a camera: solved indirect light, textured, plus the lights tested at this very point.
+// The radiance that a shaded surface sends to a camera: solved indirect light, textured, plus the lights tested at this
+// very point.
 #include "common/trace/ray_queries.h"
 #include "reflection/light_choice.h"
 #include "reflection/picture.h"

@@ -17,17 +17,22 @@ void check_channels(const Image& image) {
         throw InputError("tone mapping: the picture has " + std::to_string(image.channels) + " channels; it needs 3");
 }
 
-float finite(float value) { return value > 0 ? std::min(value, kMost) : 0.f; } // NaN compares false
+float finite(float value) {
+    return value > 0 ? std::min(value, kMost) : 0.f;
+} // NaN compares false
 
-/// Uchimura, "HDR theory and practice" (CEDEC 2017), slides 112-116, with his defaults: a toe of power c, a straight middle of slope a
-/// from m on for the length l, and an exponential shoulder that ends at P.
+/// Uchimura, "HDR theory and practice" (CEDEC 2017), slides 112-116, with his defaults: a toe of power c, a straight
+/// middle of slope a from m on for the length l, and an exponential shoulder that ends at P.
 float filmic(float x) {
     constexpr float P = 1, a = 1, m = 0.22f, l = 0.4f, c = 1.33f, b = 0;
     constexpr float l0 = (P - m) * l / a, S0 = m + l0, S1 = m + a * l0, C2 = a * P / (P - S1);
-    const float toe = m * std::pow(x / m, c) + b, straight = m + a * (x - m), shoulder = P - (P - S1) * std::exp(-C2 * (x - S0) / P);
-    const float t = std::clamp(x / m, 0.f, 1.f), toe_share = 1 - t * t * (3 - 2 * t), shoulder_share = x >= S0 ? 1.f : 0.f;
+    const float toe = m * std::pow(x / m, c) + b, straight = m + a * (x - m),
+                shoulder = P - (P - S1) * std::exp(-C2 * (x - S0) / P);
+    const float t = std::clamp(x / m, 0.f, 1.f), toe_share = 1 - t * t * (3 - 2 * t),
+                shoulder_share = x >= S0 ? 1.f : 0.f;
     const float toe_part = toe_share > 0 ? toe_share * toe : 0.f;
-    return toe_part + (1 - toe_share - shoulder_share) * (shoulder_share > 0 ? 0.f : straight) + shoulder_share * shoulder;
+    return toe_part + (1 - toe_share - shoulder_share) * (shoulder_share > 0 ? 0.f : straight) +
+           shoulder_share * shoulder;
 }
 
 float srgb(float linear) {
@@ -51,7 +56,8 @@ float automatic_exposure_stops(const Image& radiance) {
             const float value = luminance({finite(pixel[0]), finite(pixel[1]), finite(pixel[2])});
             if (value <= kLeast)
                 continue; // black surroundings are no reason to overexpose what is there
-            const float dx = 2 * (float(x) + 0.5f) / float(radiance.width) - 1, dy = 2 * (float(y) + 0.5f) / float(radiance.height) - 1;
+            const float dx = 2 * (float(x) + 0.5f) / float(radiance.width) - 1,
+                        dy = 2 * (float(y) + 0.5f) / float(radiance.height) - 1;
             const float weight = 0.15f + std::exp(-2.5f * (dx * dx + dy * dy));
             lit.push_back({value, weight});
             total += double(weight);
@@ -77,7 +83,8 @@ float automatic_exposure_stops(const Image& radiance) {
         passed += double(pixel.weight);
     }
     const double key = counted > 0 ? sum / counted : std::log2(double(lit[lit.size() / 2].luminance));
-    return float(std::min(std::log2(double(kMiddleGrey)) - key, std::log2(double(kHighlight)) - std::log2(double(bright))));
+    return float(
+        std::min(std::log2(double(kMiddleGrey)) - key, std::log2(double(kHighlight)) - std::log2(double(bright))));
 }
 
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops) {
