@@ -44,7 +44,7 @@ TEST(Picture, FurnaceOnABackdropThatCatchesShadowsIsEvenEverywhere) {
 
 TEST(Picture, BackdropDarkensUnderADarkTreeAndNotFarAway) {
     const PatchScene patches = random_crown(2000, 4, Optics{});
-    const Camera above = camera_at({0, 60, 1}, {0, 0, 0}, 0.9f);
+    const Camera above = camera_at({0, 60, 0}, {0, 0, 0}, 0.3f);
     PictureOptions options = small_picture(33, 33);
     const Image image =
         render(evenly_shaded(patches, glm::vec3(0.f)), constant_environment(glm::vec3(1.f)), above, options);
@@ -52,7 +52,7 @@ TEST(Picture, BackdropDarkensUnderADarkTreeAndNotFarAway) {
     options.ground = PictureGround::none;
     const Image without =
         render(evenly_shaded(patches, glm::vec3(0.f)), constant_environment(glm::vec3(1.f)), above, options);
-    EXPECT_EQ(pixel(without, 0, 0).g, 1.f);
+    EXPECT_NEAR(pixel(without, 0, 0).g, 1.f, 1e-5f);
     // Beside the crown, seen past its edge.
     EXPECT_LT(pixel(image, 16, 19).g, 0.97f);
     EXPECT_GT(pixel(without, 16, 19).g, pixel(image, 16, 19).g);
@@ -126,8 +126,8 @@ TEST(Picture, HolesOfAnAlphaMaskShowWhatIsBehind) {
     patches.triangle_mask = {0, 0};
     const Image image = render(evenly_shaded(patches, {0, 2, 0}), constant_environment({1, 0, 0}),
                                camera_at({0, 0, 5}, {0, 0, 0}, 0.3f), small_picture(16, 16));
-    EXPECT_EQ(pixel(image, 3, 8), glm::vec3(1, 0, 0));
-    EXPECT_EQ(pixel(image, 12, 8), glm::vec3(0, 2, 0));
+    EXPECT_LT(glm::length(pixel(image, 3, 8) - glm::vec3(1, 0, 0)), 1e-5f);
+    EXPECT_LT(glm::length(pixel(image, 12, 8) - glm::vec3(0, 2, 0)), 1e-5f);
 }
 
 TEST(Picture, TextureVariesRadianceAboutItsMean) {
