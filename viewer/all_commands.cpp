@@ -2,8 +2,8 @@
 
 namespace kokage {
 
-std::vector<Command> all_commands(CLI::App&) {
-    return {};
+std::vector<Command> all_commands(CLI::App& program) {
+    return {describe_command(program)};
 }
 
 } // namespace kokage

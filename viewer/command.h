@@ -1,6 +1,6 @@
 #pragma once
 // The subcommands of `kokage`: one function each, one file each.
-#include "common/services/progress.h"
+#include "viewer/terminal_progress.h"
 
 #include <CLI/CLI.hpp>
 #include <functional>
@@ -10,7 +10,7 @@ namespace kokage {
 /// What every command is told beside its own options.
 struct CommandContext {
     bool quiet = false; ///< no progress, no summary: errors and what was asked for alone
-    Progress* progress = nullptr;
+    TerminalProgress* progress = nullptr;
 };
 
 /// A subcommand: `app` holds its options, `run` does the work. Throws InputError, Stopped.
@@ -18,6 +18,11 @@ struct Command {
     CLI::App* app = nullptr;
     std::function<void(const CommandContext&)> run;
 };
+
+Command grow_command(CLI::App& program);
+Command describe_command(CLI::App& program);
+Command shade_command(CLI::App& program);
+Command compare_command(CLI::App& program);
 
 /// All that are built, in the order in which one uses them.
 std::vector<Command> all_commands(CLI::App& program);

@@ -1,0 +1,49 @@
+// `kokage describe`, and how a tree is named on the command line.
+#include "tests/support/program_run.h"
+
+namespace kokage {
+namespace {
+
+TEST(Describe, TellsWhatASpeciesGrowsInto) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage({"describe", "oak", "--leaves", "500", "--set", "seed=3"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(run.output.rfind("tree         oak (grown: oak, seed 3)\n", 0), 0u) << run.output;
+    EXPECT_NE(run.output.find("leaves       500, "), std::string::npos);
+    EXPECT_NE(run.output.find("branching    known"), std::string::npos);
+    EXPECT_NE(run.output.find("  order 0    1 branches"), std::string::npos);
+    EXPECT_EQ(run.errors, "");
+    EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Describe, WrongTreesAreRefusedInOneLine) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "not a tree.glb") << "nothing of the kind";
+    std::filesystem::create_directory(folder / "folder");
+    const std::vector<std::pair<std::vector<std::string>, std::string>> wrongs = {
+        {{"describe"}, "TREE"},
+        {{"describe", "baobab"}, "species: oak"},
+        {{"describe", "missing tree.glb"}, "missing tree.glb"},
+        {{"describe", "folder"}, "folder"},
+        {{"describe", "not a tree.glb"}, "not a tree.glb"},
+        {{"describe", "oak", "--leaves", "0"}, "leaves"},
+        {{"describe", "oak", "--leaves", "many"}, "many"},
+        {{"describe", "oak", "--set", "leaves"}, "NAME=VALUE"},
+        {{"describe", "oak", "--set", "leavs=4"}, "leaves"},
+        {{"describe", "oak", "--scale", "2"}, "--scale"},
+        {{"describe", "not a tree.glb", "--leaves", "7"}, "--leaves"},
+        {{"describe", "not a tree.glb", "--scale", "0"}, "--scale"},
+        {{"describe", "not a tree.glb", "--leaf-size", "-1"}, "--leaf-size"},
+        {{"describe", "oak", "--threads", "-1"}, "--threads"},
+    };
+    for (const auto& [words, hint] : wrongs) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2) << hint << run.errors;
+        EXPECT_TRUE(is_one_complaint(run.errors)) << hint;
+        EXPECT_NE(run.errors.find(hint), std::string::npos) << run.errors;
+        EXPECT_EQ(run.output, "");
+    }
+}
+
+} // namespace
+} // namespace kokage

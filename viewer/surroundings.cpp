@@ -1,0 +1,147 @@
+#include "viewer/surroundings.h"
+#include "common/environment/analytic_sky.h"
+#include "common/environment/light_description.h"
+#include "common/environment/load_environment.h"
+#include "common/services/error.h"
+#include "viewer/values.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <limits>
+
+namespace kokage {
+namespace {
+
+constexpr float kHighestRadiance = 1e30f;
+
+/// The part behind "constant:" or "gradient:"; false if `text` begins otherwise.
+bool split_kind(const std::string& text, const std::string& kind, std::string& values) {
+    if (text != kind && text.rfind(kind + ":", 0) != 0)
+        return false;
+    values = text.size() > kind.size() ? text.substr(kind.size() + 1) : "";
+    return true;
+}
+
+Daylight daylight(const Surroundings& surroundings) {
+    Daylight result;
+    if (surroundings.turbidity)
+        result.turbidity = *surroundings.turbidity;
+    if (surroundings.sun.empty())
+        return result;
+    const std::vector<double> angles = numbers_from(surroundings.sun, "--sun");
+    if (angles.size() != 2 || angles[1] < -90 || angles[1] > 90)
+        throw InputError(
+            "--sun: '" + surroundings.sun +
+            "' is not AZIMUTH,ELEVATION in degrees, such as 135,45 (azimuth 0 is north, -Z; 90 is east, +X)");
+    result.sun_azimuth_degrees = angles[0];
+    result.sun_elevation_degrees = angles[1];
+    return result;
+}
+
+Environment gradient(const std::string& values) {
+    if (values.empty())
+        return gradient_environment({0.25f, 0.45f, 0.9f}, {0.8f, 0.85f, 0.9f}, {0.12f, 0.1f, 0.08f});
+    const std::vector<double> n = numbers_from(values, "--environment gradient");
+    const bool in_range =
+        std::all_of(n.begin(), n.end(), [](double x) { return x >= 0 && x <= double(kHighestRadiance); });
+    if (n.size() != 9 || !in_range)
+        throw InputError("--environment gradient: '" + values +
+                         "' is not nine numbers from 0: red,green,blue of the zenith, of the horizon and of the nadir");
+    const auto color = [&](std::size_t i) { return glm::vec3(n[i], n[i + 1], n[i + 2]); };
+    return gradient_environment(color(0), color(3), color(6));
+}
+
+/// What needs no file, lights left out. Empty for a file.
+std::optional<Environment> made_environment(const Surroundings& surroundings) {
+    std::string values;
+    if (surroundings.environment == "sky")
+        return analytic_sky(daylight(surroundings));
+    if (split_kind(surroundings.environment, "constant", values))
+        return constant_environment(values.empty() ? glm::vec3(1.f)
+                                                   : color_from(values, "--environment constant", kHighestRadiance));
+    if (split_kind(surroundings.environment, "gradient", values))
+        return gradient(values);
+    return {};
+}
+
+} // namespace
+
+void add_surroundings_options(CLI::App& app, Surroundings& s) {
+    app.add_option("--environment", s.environment,
+                   "What lights the tree: sky (daylight with sun), constant[:R,G,B], gradient[:nine numbers: zenith, "
+                   "horizon, nadir], "
+                   "or a lat-long image (.hdr, .exr, .png)")
+        ->type_name("ENV")
+        ->capture_default_str()
+        ->group("Light");
+    app.add_option("--sun", s.sun,
+                   "Sky: where the sun stands, in degrees (otherwise 135,45); azimuth 0 is north (-Z), 90 east (+X)")
+        ->type_name("AZ,EL")
+        ->group("Light");
+    app.add_option("--turbidity", s.turbidity, "Sky: haze, from 2 (very clear) to 10 (otherwise 3)")
+        ->type_name("T")
+        ->group("Light");
+    app.add_option("--light", s.lights,
+                   "A light more: sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  directional:AZ,EL,R,G,B  "
+                   "point:X,Y,Z,R,G,B; may be repeated")
+        ->type_name("LIGHT")
+        ->allow_extra_args(false)
+        ->group("Light");
+    app.add_flag("--strict", s.strict, "Images: refuse bad pixels instead of repairing them")->group("Light");
+    app.add_flag("--ground,!--no-ground", s.ground,
+                 "A diffuse ground under the tree takes part in the light (otherwise under the sky alone)")
+        ->group("Light");
+    app.add_option("--ground-albedo", s.ground_albedo, "Its colour: one number or R,G,B from 0 to 1 (otherwise 0.2)")
+        ->type_name("COLOR")
+        ->group("Light");
+}
+
+void check_surroundings(const Surroundings& s) {
+    if (s.environment != "sky" && (!s.sun.empty() || s.turbidity))
+        throw InputError("--sun and --turbidity shape the sky; under '" + s.environment +
+                         "' add a light: --light sun:AZ,EL,R,G,B");
+    if (!s.ground_albedo.empty()) {
+        color_from(s.ground_albedo, "--ground-albedo");
+        if (s.ground == false)
+            throw InputError("--ground-albedo and --no-ground contradict one another; leave one of them out");
+    }
+    for (const std::string& light : s.lights)
+        parse_light(light);
+    if (made_environment(s))
+        return;
+    std::error_code ignored;
+    if (std::filesystem::is_directory(s.environment, ignored))
+        throw InputError("--environment: '" + s.environment + "' is a folder; give an image (.hdr, .exr, .png)");
+    if (!std::filesystem::exists(s.environment, ignored))
+        throw InputError("--environment: there is no file '" + s.environment +
+                         "'; give an image (.hdr, .exr, .png), or sky, constant or gradient");
+}
+
+Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report) {
+    std::optional<Environment> made = made_environment(s);
+    EnvironmentLoading loading;
+    loading.strict = s.strict;
+    Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
+    for (const std::string& light : s.lights)
+        add_light(environment, light);
+    for (PointLight& light : environment.point_lights)
+        light.position = glm::vec3(glm::dvec3(light.position) - origin);
+    return environment;
+}
+
+std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& environment, const Tree& tree) {
+    const bool wanted = s.ground.value_or(!environment.has_lower_half || !s.ground_albedo.empty());
+    if (!wanted)
+        return {};
+    Ground ground;
+    if (!s.ground_albedo.empty())
+        ground.albedo = color_from(s.ground_albedo, "--ground-albedo");
+    float lowest = std::numeric_limits<float>::max();
+    for (const TreePart& part : tree.parts)
+        for (const glm::vec3& position : part.positions)
+            lowest = std::min(lowest, position.y);
+    ground.height_m = lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
+    return ground;
+}
+
+} // namespace kokage

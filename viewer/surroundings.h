@@ -1,0 +1,35 @@
+#pragma once
+// The light that a command works under: sky, constant, gradient or an image, and added lights; the ground.
+#include "common/environment/environment.h"
+#include "common/scene/patch_scene.h"
+#include "trees/tree.h"
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace kokage {
+
+struct Surroundings {
+    std::string environment = "sky"; ///< sky, constant[:R,G,B], gradient[:9 numbers] or a file
+    std::string sun;                 ///< sky: "AZIMUTH,ELEVATION" in degrees; empty = the default place
+    std::optional<double> turbidity; ///< sky: haze
+    std::vector<std::string> lights; ///< as common/environment/light_description.h reads them
+    bool strict = false;             ///< images: refuse bad pixels
+    std::optional<bool> ground;      ///< empty: where the environment has no lower half
+    std::string ground_albedo;       ///< a colour; empty = 0.2
+};
+
+void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
+
+/// Throws InputError, before any work, for values that can't be.
+void check_surroundings(const Surroundings& surroundings);
+
+/// Builds or loads it. Point lights are placed relative to `origin` (Tree::origin), as all positions of a tree are.
+Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
+
+/// The ground that takes part in the transport, at the tree's lowest point; empty if there is none.
+std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, const Tree& tree);
+
+} // namespace kokage
