@@ -4,10 +4,28 @@
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
 #include "trees/foreign_tree.h"
+#include "trees/tree_extras.h"
 
 #include <cmath>
 
 namespace kokage {
+
+namespace {
+
+void scale_tree(Tree& tree, double scale) {
+    const auto scaled = [scale](const glm::vec3& v) { return glm::vec3(glm::dvec3(v) * scale); };
+    tree.origin *= scale;
+    for (Branch& branch : tree.skeleton.branches)
+        for (Branch::Node& node : branch.nodes)
+            node = {scaled(node.position), float(double(node.radius_m) * scale)};
+    for (TreePart& part : tree.parts)
+        for (glm::vec3& position : part.positions)
+            position = scaled(position);
+    for (Leaf& leaf : tree.leaves)
+        leaf.centre = scaled(leaf.centre);
+}
+
+} // namespace
 
 Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Progress& progress) {
     if (!(options.scale > 0) || !std::isfinite(options.scale))
@@ -16,7 +34,18 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
         throw InputError("the leaf size is " + std::to_string(options.leaf_size) +
                          " m; it must be 0 (found by itself) or above");
     const GltfDocument document = GltfDocument::read(path, progress);
-    return read_foreign_tree(document, options, progress);
+    std::string why;
+    if (options.foliage_materials.empty() && options.leaf_size == 0) {
+        if (std::optional<OwnTree> own = read_own_tree(document, why, progress)) {
+            if (options.scale != 1)
+                scale_tree(own->tree, options.scale);
+            return std::move(own->tree);
+        }
+    }
+    Tree tree = read_foreign_tree(document, options, progress);
+    if (!why.empty())
+        tree.notes.insert(tree.notes.begin(), why + ": leaves and branching were found anew");
+    return tree;
 }
 
 } // namespace kokage
