@@ -18,6 +18,11 @@ glm::vec3 direction_from_lat_long(glm::vec2 uv) {
     return {sine * std::cos(azimuth), std::cos(polar), sine * std::sin(azimuth)};
 }
 
+glm::dvec3 pixel_direction(int x, int y, int width, int height) {
+    const double azimuth = ((x + 0.5) / width - 0.5) * 2 * kPiDouble, polar = (y + 0.5) / height * kPiDouble;
+    return {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
+}
+
 double pixel_solid_angle(int y, int width, int height) {
     // cos a - cos b = 2 sin((a+b)/2) sin((b-a)/2): no cancellation at the poles of tall images.
     const double step = kPiDouble / height;

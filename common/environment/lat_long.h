@@ -14,6 +14,8 @@ namespace kokage {
 glm::vec2 lat_long_from_direction(const glm::vec3& direction);
 /// Unit direction of texture coordinates.
 glm::vec3 direction_from_lat_long(glm::vec2 uv);
+/// Unit direction of a pixel's centre.
+glm::dvec3 pixel_direction(int x, int y, int width, int height);
 /// Exact solid angle in sr of every pixel of row y: (2pi/width) (cos(theta_top) - cos(theta_bottom)).
 double pixel_solid_angle(int y, int width, int height);
 /// Bilinear lookup, wrapping in u and clamping at the poles. The image has at least 3 channels.

@@ -107,22 +107,28 @@ BrightPixels find_bright_pixels(const Image& image, double brightness_ratio) {
         bright.threshold = threshold;
         dim = dim_part(image, threshold);
     }
+    std::vector<PixelRun> rows;
     for (int y = 0; y < image.height; ++y)
-        for (int x = 0; x < image.width;) {
-            if (brightness(image.at(x, y)) <= bright.threshold) {
-                ++x;
-                continue;
-            }
-            const int begin = x;
-            while (x < image.width && brightness(image.at(x, y)) > bright.threshold)
-                ++x;
-            bright.runs.push_back({y, begin, x});
-        }
+        rows.push_back({y, 0, image.width});
+    bright.runs = brighter_runs(image, rows, bright.threshold);
     return bright;
 }
 
-std::vector<LightRegion> connect_regions(const Image& image, const BrightPixels& bright, double gap_degrees) {
-    const std::vector<PixelRun>& runs = bright.runs;
+std::vector<PixelRun> brighter_runs(const Image& image, const std::vector<PixelRun>& within, double threshold) {
+    std::vector<PixelRun> runs;
+    for (const PixelRun& run : within)
+        for (int x = run.begin; x < run.end; ++x) {
+            const int begin = x;
+            while (x < run.end && brightness(image.at(x, run.y)) > threshold)
+                ++x;
+            if (x > begin)
+                runs.push_back({run.y, begin, x});
+        }
+    return runs;
+}
+
+std::vector<LightRegion> connect_regions(const Image& image, const std::vector<PixelRun>& runs, double background,
+                                         double gap_degrees) {
     const double gap = gap_degrees * kPiDouble / 180;
     std::vector<std::size_t> row_begin(std::size_t(image.height) + 1);
     for (int y = 0; y <= image.height; ++y)
@@ -154,14 +160,31 @@ std::vector<LightRegion> connect_regions(const Image& image, const BrightPixels&
         region.runs.push_back(runs[i]);
         double sum = 0;
         for (int x = runs[i].begin; x < runs[i].end; ++x)
-            sum += brightness(image.at(x, runs[i].y)) - bright.background;
+            sum += brightness(image.at(x, runs[i].y)) - background;
         region.excess += sum * pixel_solid_angle(runs[i].y, image.width, image.height);
     }
     return regions;
 }
 
-glm::dvec3 surrounding_color(const Image& image, const LightRegion& region, const BrightPixels& bright,
-                             double gap_degrees) {
+double cone_degrees(const Image& image, const LightRegion& region) {
+    glm::dvec3 mean(0);
+    for (const PixelRun& run : region.runs)
+        for (int x = run.begin; x < run.end; ++x)
+            mean += pixel_solid_angle(run.y, image.width, image.height) * brightness(image.at(x, run.y)) *
+                    pixel_direction(x, run.y, image.width, image.height);
+    const double length = glm::length(mean);
+    if (!(length > 0))
+        return 180;
+    double smallest = 1;
+    for (const PixelRun& run : region.runs)
+        for (int x = run.begin; x < run.end; ++x)
+            smallest =
+                std::min(smallest, glm::dot(mean / length, pixel_direction(x, run.y, image.width, image.height)));
+    return std::acos(std::clamp(smallest, -1.0, 1.0)) * 180 / kPiDouble;
+}
+
+glm::dvec3 surrounding_color(const Image& image, const LightRegion& region, double threshold,
+                             const glm::dvec3& background, double gap_degrees) {
     const double gap = gap_degrees * kPiDouble / 180;
     const int rows = row_reach(image, gap);
     // Per row, the columns near the region as a difference array: +1 where a stretch begins, -1 behind its end.
@@ -190,14 +213,14 @@ glm::dvec3 surrounding_color(const Image& image, const LightRegion& region, cons
         for (int x = 0; x < image.width && !row.empty(); ++x) {
             cover += row[std::size_t(x)];
             const float* p = image.at(x, y);
-            if (cover > 0 && brightness(p) <= bright.threshold) {
+            if (cover > 0 && brightness(p) <= threshold) {
                 const double weight = pixel_solid_angle(y, image.width, image.height);
                 sum += weight * glm::dvec3(p[0], p[1], p[2]);
                 solid_angle += weight;
             }
         }
     }
-    return solid_angle > 0 ? sum / solid_angle : bright.background_color;
+    return solid_angle > 0 ? sum / solid_angle : background;
 }
 
 } // namespace kokage

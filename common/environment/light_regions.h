@@ -26,13 +26,22 @@ struct LightRegion {
     std::vector<PixelRun> runs; ///< in raster order
     double excess = 0;          ///< integral of brightness - background
 };
+/// Runs of pixels brighter than a threshold within runs (in raster order; so is the result).
+std::vector<PixelRun> brighter_runs(const Image& image, const std::vector<PixelRun>& within, double threshold);
+
 /// Regions in raster order of their first pixel. Two runs are joined if pixels of theirs are neighbours (8 of them; all
 /// pixels of the first row are, and of the last, because they meet at a pole) or their centres are at most gap_degrees
 /// apart.
-std::vector<LightRegion> connect_regions(const Image& image, const BrightPixels& bright, double gap_degrees);
+std::vector<LightRegion> connect_regions(const Image& image, const std::vector<PixelRun>& runs, double background,
+                                         double gap_degrees);
 
-/// Mean colour of the pixels that are not bright, within gap_degrees of the region; the background if there are none.
-glm::dvec3 surrounding_color(const Image& image, const LightRegion& region, const BrightPixels& bright,
-                             double gap_degrees);
+/// Half angle in degrees of the cone around the region's mean direction, weighted by its light, that holds all its
+/// pixels' centres.
+double cone_degrees(const Image& image, const LightRegion& region);
+
+/// Mean colour of the pixels at most as bright as `threshold` within gap_degrees of the region; `background` if there
+/// are none.
+glm::dvec3 surrounding_color(const Image& image, const LightRegion& region, double threshold,
+                             const glm::dvec3& background, double gap_degrees);
 
 } // namespace kokage

@@ -11,7 +11,7 @@ struct EnvironmentLoading {
     bool strict = false;  ///< refuse bad pixels instead of repairing them
     bool split = true;    ///< split lights off
     int max_width = 4096; ///< wider maps are reduced by whole factors to at most this (energy kept); 0 = never
-    LightSplitting splitting;
+    LightSplitting splitting{};
 };
 
 /// Reads a lat-long image. Integer files (PNG) are decoded from sRGB. Throws InputError with the path, and with the

@@ -18,12 +18,6 @@ struct Piece {
     double weight() const { return irradiance.r + irradiance.g + irradiance.b; }
 };
 
-glm::dvec3 pixel_direction(int x, int y, const Image& image) {
-    const double azimuth = ((x + 0.5) / image.width - 0.5) * 2 * kPiDouble,
-                 polar = (y + 0.5) / image.height * kPiDouble;
-    return {std::sin(polar) * std::cos(azimuth), std::cos(polar), std::sin(polar) * std::sin(azimuth)};
-}
-
 glm::dvec3 pixel_color(const Image& image, int x, int y) {
     const float* p = image.at(x, y);
     return {p[0], p[1], p[2]};
@@ -108,7 +102,8 @@ DistantLight make_light(std::vector<Piece> pieces, int max_texels) {
     for (const Group& group : done) {
         light.texels.push_back(merge(pieces, group));
         const DistantLight::Texel& texel = light.texels.back();
-        const float apart = std::acos(std::clamp(glm::dot(texel.direction, light.direction), -1.f, 1.f));
+        // By the chord: an arc cosine in float is off by 3e-4 for small angles.
+        const float apart = 2 * std::asin(std::min(1.f, 0.5f * glm::distance(texel.direction, light.direction)));
         light.half_angle = std::max(light.half_angle, std::min(kPi, apart + texel.half_angle));
     }
     return light;
@@ -126,7 +121,8 @@ std::vector<Piece> cut_out(Image& remainder, const LightRegion& region, const gl
             for (int c = 0; c < 3; ++c)
                 remainder.at(x, run.y)[c] = float(left[glm::length_t(c)]);
             if (color != left)
-                pieces.push_back({pixel_direction(x, run.y, remainder), (color - left) * solid_angle, solid_angle});
+                pieces.push_back({pixel_direction(x, run.y, remainder.width, remainder.height),
+                                  (color - left) * solid_angle, solid_angle});
         }
     }
     return pieces;
@@ -149,6 +145,38 @@ std::string region_name(std::size_t number, std::size_t count, const glm::vec3& 
     return text;
 }
 
+/// A region that is a light, and the brightness above which its pixels are bright.
+struct Found {
+    LightRegion region;
+    double threshold;
+};
+
+/// Rules 1 to 4 of the header.
+std::vector<Found> find_lights(const Image& image, const BrightPixels& bright, const LightSplitting& rule) {
+    std::vector<Found> lights;
+    struct Candidates {
+        std::vector<PixelRun> runs;
+        double threshold;
+    };
+    std::vector<Candidates> to_connect{{bright.runs, bright.threshold}};
+    while (!to_connect.empty()) {
+        const Candidates candidates = std::move(to_connect.back());
+        to_connect.pop_back();
+        for (LightRegion& region : connect_regions(image, candidates.runs, bright.background, rule.gap_degrees)) {
+            if (!(region.excess > 0 && region.excess >= rule.least_share * bright.total))
+                continue;
+            if (cone_degrees(image, region) <= rule.max_half_angle_degrees)
+                lights.push_back({std::move(region), candidates.threshold});
+            else
+                to_connect.push_back(
+                    {brighter_runs(image, region.runs, 2 * candidates.threshold), 2 * candidates.threshold});
+        }
+    }
+    std::stable_sort(lights.begin(), lights.end(),
+                     [](const Found& a, const Found& b) { return a.region.excess > b.region.excess; });
+    return lights;
+}
+
 } // namespace
 
 LightSplit split_lights(const Image& image, const LightSplitting& splitting) {
@@ -157,20 +185,16 @@ LightSplit split_lights(const Image& image, const LightSplitting& splitting) {
     LightSplit split;
     split.remainder = first_three_channels(image);
     const BrightPixels bright = find_bright_pixels(split.remainder, splitting.brightness_ratio);
-    std::vector<LightRegion> regions = connect_regions(split.remainder, bright, splitting.gap_degrees);
-    std::erase_if(regions, [&](const LightRegion& region) {
-        return !(region.excess > 0 && region.excess >= splitting.least_share * bright.total);
-    });
-    split.regions_found = regions.size();
-    std::stable_sort(regions.begin(), regions.end(),
-                     [](const LightRegion& a, const LightRegion& b) { return a.excess > b.excess; });
-    regions.resize(std::min(regions.size(), std::size_t(std::max(splitting.max_lights, 0))));
+    std::vector<Found> found = find_lights(split.remainder, bright, splitting);
+    split.regions_found = found.size();
+    found.resize(std::min(found.size(), std::size_t(std::max(splitting.max_lights, 0))));
 
     std::vector<glm::dvec3> fills; // all before the first cut, so that no fill sees another's
-    for (const LightRegion& region : regions)
-        fills.push_back(surrounding_color(split.remainder, region, bright, splitting.gap_degrees));
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-        std::vector<Piece> pieces = cut_out(split.remainder, regions[i], fills[i]);
+    for (const Found& light : found)
+        fills.push_back(surrounding_color(split.remainder, light.region, light.threshold, bright.background_color,
+                                          splitting.gap_degrees));
+    for (std::size_t i = 0; i < found.size(); ++i) {
+        std::vector<Piece> pieces = cut_out(split.remainder, found[i].region, fills[i]);
         if (!pieces.empty())
             split.lights.push_back(make_light(std::move(pieces), std::max(splitting.max_texels, 1)));
     }
