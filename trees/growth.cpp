@@ -17,7 +17,7 @@ namespace {
 /// of about two steps lets a branch end within reach of its leaves (Runions et al. 2007, section 3).
 constexpr float step_share = 0.36f, influence_share = 4.5f, kill_share = 0.75f;
 /// Shoots that one attraction point stands for.
-constexpr double shoots_per_attractor = 3.4;
+constexpr double shoots_per_attractor = 2.2;
 
 } // namespace
 

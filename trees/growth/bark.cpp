@@ -44,8 +44,8 @@ struct BarkPiece {
 
 class TubeBuilder {
   public:
-    TubeBuilder(const Branch& branch, float parent_radius, std::uint64_t index, const GrowthParameters& p)
-        : rings_(place_rings(branch, parent_radius, p)), is_trunk_(parent_radius <= 0), flare_(float(p.root_flare)),
+    TubeBuilder(const Tube& tube, std::uint64_t index, const GrowthParameters& p)
+        : rings_(tube.rings), joint_(tube.joint), is_trunk_(tube.joint.radius_m <= 0), flare_(float(p.root_flare)),
           tile_(float(p.bark_tile)), random_(p.seed, streams::of(streams::bark, index)) {
         phase_ = random_.uniform(0.f, 2 * kPi);
         add_vertices();
@@ -56,6 +56,7 @@ class TubeBuilder {
         check();
         mesh_.update_face_normals();
         mesh_.update_vertex_normals();
+        blend_normals_into_parent();
     }
 
     void append_to(BarkPiece& piece) {
@@ -102,10 +103,35 @@ class TubeBuilder {
             }
             for (int k = 0; k < ring.sides; ++k) {
                 const float angle = 2 * kPi * float(k) / float(ring.sides);
-                const float radius = ring.radius_m * swelling(ring, angle);
-                vertices_.back().push_back(mesh_.add_vertex(
-                    to_openmesh(ring.centre + radius * (std::cos(angle) * ring.x + std::sin(angle) * ring.y))));
+                const float radius = ring.radius_m * (ring.on_parent ? 1.f : swelling(ring, angle));
+                glm::vec3 position = ring.centre + radius * (std::cos(angle) * ring.x + std::sin(angle) * ring.y);
+                if (ring.on_parent)
+                    position = slid_on_to_parent(position, ring.along);
+                vertices_.back().push_back(mesh_.add_vertex(to_openmesh(position)));
             }
+        }
+    }
+
+    /// The place on the parent's cylinder (a little inside it, because its sides are flat) that lies before or behind a
+    /// point in the branch's direction; where the branch passes it by, the nearest place to it.
+    glm::vec3 slid_on_to_parent(const glm::vec3& point, const glm::vec3& along) const {
+        const auto across = [&](const glm::vec3& v) { return v - glm::dot(v, joint_.axis) * joint_.axis; };
+        const glm::vec3 q = across(point - joint_.centre), d = across(along);
+        const float radius = 0.93f * joint_.radius_m, a = std::max(glm::dot(d, d), 0.04f), b = glm::dot(q, d),
+                    c = glm::dot(q, q) - radius * radius;
+        const float t = (-b + std::sqrt(std::max(0.f, b * b - a * c))) / a;
+        return point + std::clamp(t, -1.5f * joint_.radius_m, 0.8f * rings_[1].radius_m) * along;
+    }
+
+    /// Where a branch comes out of its parent, both are lit alike: no crease shows.
+    void blend_normals_into_parent() {
+        if (rings_.size() < 2 || !rings_[1].on_parent)
+            return;
+        for (const Mesh::VertexHandle v : vertices_[1]) {
+            const glm::vec3 from_axis = from_openmesh(mesh_.point(v)) - joint_.centre;
+            const glm::vec3 outwards = unit_or(from_axis - glm::dot(from_axis, joint_.axis) * joint_.axis, {0, 1, 0});
+            const glm::vec3 own = unit_or(from_openmesh(mesh_.point(v)) - rings_[1].centre, outwards);
+            mesh_.set_normal(v, to_openmesh(unit_or(outwards + 0.35f * own, outwards)));
         }
     }
 
@@ -198,7 +224,8 @@ class TubeBuilder {
         }
     }
 
-    std::vector<Ring> rings_;
+    const std::vector<Ring>& rings_;
+    const Joint& joint_;
     bool is_trunk_;
     float flare_, tile_, phase_ = 0;
     int tiles_ = 1;
@@ -209,28 +236,16 @@ class TubeBuilder {
     std::vector<TubeFace> faces_;
 };
 
-float radius_of_parent(const Skeleton& skeleton, const Branch& branch) {
-    if (branch.parent < 0)
-        return 0;
-    const Branch& parent = skeleton.branches[std::size_t(branch.parent)];
-    const auto nearest =
-        std::min_element(parent.nodes.begin(), parent.nodes.end(), [&](const Branch::Node& a, const Branch::Node& b) {
-            return glm::distance(a.position, branch.nodes[0].position) <
-                   glm::distance(b.position, branch.nodes[0].position);
-        });
-    return nearest->radius_m;
-}
-
 } // namespace
 
 std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parameters, TreePart& part) {
     constexpr std::size_t block = 64;
-    const std::size_t count = skeleton.branches.size();
+    const std::vector<Tube> tubes = make_tubes(skeleton, parameters);
+    const std::size_t count = tubes.size();
     std::vector<BarkPiece> pieces((count + block - 1) / block);
     parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            const Branch& branch = skeleton.branches[i];
-            TubeBuilder(branch, radius_of_parent(skeleton, branch), i, parameters).append_to(pieces[begin / block]);
+            TubeBuilder(tubes[i], i, parameters).append_to(pieces[begin / block]);
         }
     });
     part.kind = TreePartKind::bark;

@@ -64,9 +64,9 @@ LeafShape fine_shape() {
 
 const LeafShape& leaf_shape(int detail) {
     static const LeafShape kite = from_right_side({{0.5f, 0.6f}}, {{0, 1, 2}});
-    // Base 0, lower lobe 1, bay 2, widest lobe 3, bay 4, tip 5.
-    static const LeafShape lobed = from_right_side({{0.33f, 0.30f}, {0.17f, 0.44f}, {0.5f, 0.68f}, {0.22f, 0.80f}},
-                                                   {{0, 1, 2}, {0, 2, 4}, {2, 3, 4}, {0, 4, 5}});
+    // Base 0, lower lobe 1, bay 2, widest lobe 3, shoulder 4, tip 5.
+    static const LeafShape lobed = from_right_side({{0.34f, 0.36f}, {0.25f, 0.50f}, {0.5f, 0.70f}, {0.34f, 0.91f}},
+                                                   {{0, 1, 2}, {0, 2, 5}, {2, 3, 4}, {2, 4, 5}});
     static const LeafShape fine = fine_shape();
     return detail <= 0 ? kite : detail == 1 ? lobed : fine;
 }

@@ -12,7 +12,7 @@ namespace {
 /// Mean reflectance and transmittance of an oak leaf in the three channels: green light 13 % and 13 %, red and blue far
 /// less. About what leaf spectra give (Hosgood et al. 1995, LOPEX), in linear Rec.709.
 constexpr glm::vec3 leaf_reflectance{0.075f, 0.135f, 0.032f}, leaf_transmittance{0.075f, 0.140f, 0.018f};
-constexpr glm::vec3 bark_albedo{0.165f, 0.135f, 0.108f};
+constexpr glm::vec3 bark_albedo{0.150f, 0.130f, 0.110f};
 
 /// Value noise on a lattice that repeats after `period` cells, in 0..1.
 float tiling_noise(float x, float y, int period_x, int period_y, std::uint64_t seed) {

@@ -56,6 +56,8 @@ class SkeletonBuilder {
         : nodes_(std::move(nodes)), p_(p), children_(nodes_) {
         place_shoots();
         measure();
+        for (int pass = 0; pass < 2; ++pass)
+            smooth();
     }
 
     GrownSkeleton build() {
@@ -135,22 +137,40 @@ class SkeletonBuilder {
         }
     }
 
+    /// Draws every node half of the way to the middle between its neighbours: steps become curves, knees stay.
+    void smooth() {
+        std::vector<glm::vec3> smoothed(nodes_.size());
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            smoothed[i] = nodes_[i].position;
+            const std::int32_t next = main_child(std::int32_t(i));
+            if (nodes_[i].parent >= 0 && next >= 0)
+                smoothed[i] = 0.5f * nodes_[i].position + 0.25f * (nodes_[std::size_t(nodes_[i].parent)].position +
+                                                                   nodes_[std::size_t(next)].position);
+        }
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            nodes_[i].position = smoothed[i];
+    }
+
     /// Pipe model: every shoot below counts with radius^e.
     float radius(std::int32_t node) const {
         return float(p_.shoot_radius * std::pow(std::max(1.0, load_[std::size_t(node)]), 1 / p_.pipe_exponent));
     }
 
+    /// The child that goes on as the same branch: the one that bears most, unless it turns off sharply.
     std::int32_t main_child(std::int32_t node) const {
         std::int32_t best = -1;
+        double best_score = -1;
         for (std::int32_t c = children_.first[std::size_t(node)]; c >= 0; c = children_.next[std::size_t(c)]) {
             if (load_[std::size_t(c)] <= 0)
                 continue;
-            const bool same_axis =
-                nodes_[std::size_t(node)].axis >= 0 && nodes_[std::size_t(c)].axis == nodes_[std::size_t(node)].axis;
-            if (same_axis)
+            if (nodes_[std::size_t(node)].axis >= 0 && nodes_[std::size_t(c)].axis == nodes_[std::size_t(node)].axis)
                 return c;
-            if (best < 0 || load_[std::size_t(c)] > load_[std::size_t(best)])
+            const double straightness = std::max(0.f, glm::dot(direction_at(node), direction_at(c)));
+            const double score = load_[std::size_t(c)] * (0.25 + straightness);
+            if (score > best_score) {
                 best = c;
+                best_score = score;
+            }
         }
         return best;
     }

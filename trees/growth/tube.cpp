@@ -25,7 +25,7 @@ void mark_needed(const std::vector<Branch::Node>& nodes, std::size_t first, std:
     float worst = 1.f;
     std::size_t at = first;
     for (std::size_t i = first + 1; i < last; ++i) {
-        const float tolerance = std::max(0.35f * nodes[i].radius_m, 0.001f);
+        const float tolerance = std::max((nodes[i].radius_m > 0.01f ? 0.2f : 0.35f) * nodes[i].radius_m, 0.001f);
         const float excess =
             distance_to_segment(nodes[i].position, nodes[first].position, nodes[last].position) / tolerance;
         if (excess > worst) {
@@ -119,9 +119,40 @@ std::vector<Ring> rings_along(const std::vector<Point>& line, bool flat_start) {
     return rings;
 }
 
-} // namespace
+/// The line without its points between two distances from its start.
+void remove_between(std::vector<Point>& line, float low, float high) {
+    float length = 0;
+    std::vector<Point> kept{line.front()};
+    for (std::size_t i = 1; i < line.size(); ++i) {
+        length += glm::distance(line[i].position, line[i - 1].position);
+        if (length <= low || length >= high || i + 1 == line.size())
+            kept.push_back(line[i]);
+    }
+    line = std::move(kept);
+}
 
-std::vector<Ring> place_rings(const Branch& branch, float parent_radius, const GrowthParameters& p) {
+float length_of(const std::vector<Point>& line) {
+    float length = 0;
+    for (std::size_t i = 1; i < line.size(); ++i)
+        length += glm::distance(line[i].position, line[i - 1].position);
+    return length;
+}
+
+/// Replaces the start of a line by the three rings of a collar. Returns false if the branch is too short to have one.
+bool add_collar(std::vector<Point>& line, const Joint& joint) {
+    const glm::vec3 out = unit_or(line[1].position - line[0].position, {0, 1, 0});
+    const float sine = glm::length(glm::cross(out, joint.axis)), radius = line[0].radius;
+    const float surface = joint.radius_m / std::max(sine, 0.4f); // where the centre line leaves the parent
+    if (length_of(line) < surface + 3 * radius)
+        return false;
+    remove_between(line, 0, surface + 1.9f * radius);
+    insert_at(line, surface + 2.2f * radius);
+    insert_at(line, surface + 0.9f * radius);
+    insert_at(line, surface);
+    return line.size() > 4;
+}
+
+std::vector<Ring> place_rings(const Branch& branch, const Joint& joint, const GrowthParameters& p) {
     std::vector<Point> line = centre_line(branch.nodes);
     // Coincident points have no direction.
     line.erase(
@@ -131,22 +162,54 @@ std::vector<Ring> place_rings(const Branch& branch, float parent_radius, const G
     if (line.size() < 2)
         line.push_back({line[0].position + glm::vec3(0, std::max(1e-4f, line[0].radius), 0), line[0].radius});
     const float radius = line[0].radius;
-    const bool is_trunk = parent_radius <= 0, has_collar = !is_trunk && radius > 0.008f;
+    const bool is_trunk = joint.radius_m <= 0;
+    if (!is_trunk && glm::distance(joint.centre, line[1].position) > 1e-6f)
+        line[0].position = joint.centre;
     if (is_trunk && p.root_flare > 0)
         for (const float share : {0.35f, 0.9f, 1.8f, 3.2f})
             insert_at(line, share * radius);
-    if (has_collar)
-        for (const float share : {0.2f, 1.f, 2.2f})
-            insert_at(line, 0.9f * parent_radius + share * radius);
+    const bool has_collar = !is_trunk && radius > 0.006f && add_collar(line, joint);
     std::vector<Ring> rings = rings_along(line, is_trunk);
-    if (has_collar) // the wood swells where a branch comes out of its parent
-        for (Ring& ring : rings) {
-            const float outside = std::max(0.f, ring.from_start_m - 0.8f * parent_radius);
-            const float room = std::max(1.f, 0.95f * parent_radius / ring.radius_m);
-            ring.radius_m *= std::min(room, 1 + 0.75f * std::exp(-outside / (1.1f * radius)));
-        }
+    if (has_collar) {
+        static constexpr float widening[] = {0.6f, 1.65f, 1.22f};
+        for (std::size_t i = 0; i < 3; ++i)
+            rings[i].radius_m *= std::min(widening[i], std::max(1.f, 0.9f * joint.radius_m / rings[i].radius_m));
+        rings[0].radius_m = std::min(rings[0].radius_m, 0.6f * joint.radius_m);
+        rings[1].on_parent = true;
+    }
     rings.back().radius_m = 0;
     return rings;
+}
+
+/// The place on the parent's centre line nearest to where a branch begins.
+Joint joint_on(const std::vector<Ring>& parent, const glm::vec3& start) {
+    Joint joint;
+    float nearest = 1e30f;
+    for (std::size_t i = 0; i + 1 < parent.size(); ++i) {
+        const glm::vec3 way = parent[i + 1].centre - parent[i].centre;
+        const float t =
+            std::clamp(glm::dot(start - parent[i].centre, way) / std::max(glm::dot(way, way), 1e-20f), 0.f, 1.f);
+        const glm::vec3 here = parent[i].centre + t * way;
+        if (const float d = glm::distance(here, start); d < nearest) {
+            nearest = d;
+            joint = {here, unit_or(way, parent[i].along),
+                     std::max(1e-6f, glm::mix(parent[i].radius_m, parent[i + 1].radius_m, t))};
+        }
+    }
+    return joint;
+}
+
+} // namespace
+
+std::vector<Tube> make_tubes(const Skeleton& skeleton, const GrowthParameters& parameters) {
+    std::vector<Tube> tubes(skeleton.branches.size());
+    for (std::size_t i = 0; i < tubes.size(); ++i) {
+        const Branch& branch = skeleton.branches[i];
+        if (branch.parent >= 0)
+            tubes[i].joint = joint_on(tubes[std::size_t(branch.parent)].rings, branch.nodes[0].position);
+        tubes[i].rings = place_rings(branch, tubes[i].joint, parameters);
+    }
+    return tubes;
 }
 
 } // namespace kokage

@@ -12,11 +12,23 @@ struct Ring {
     float radius_m = 0;
     float from_start_m = 0; ///< length of the centre line up to here
     int sides = 3;          ///< vertices of this ring
+    bool on_parent = false; ///< its vertices are slid along the branch on to the parent's surface
 };
 
-/// parent_radius: of the parent where the branch leaves it; 0 for a trunk.
-/// Places rings where the centre line bends or the radius changes; fewer sides on thinner wood. The last ring is the
-/// tip (radius 0).
-std::vector<Ring> place_rings(const Branch& branch, float parent_radius, const GrowthParameters& parameters);
+/// Where a branch leaves its parent's tube; radius 0 for a trunk.
+struct Joint {
+    glm::vec3 centre{0.f}, axis{0, 1, 0}; ///< a point and the direction of the parent's centre line
+    float radius_m = 0;                   ///< of the parent there
+};
+
+struct Tube {
+    Joint joint;
+    std::vector<Ring> rings; ///< at least 2; the last one is the tip (radius 0)
+};
+
+/// The tubes of all branches: rings where the centre line bends or the radius changes, fewer sides on thinner wood.
+/// Thick branches get a collar: a narrow foot inside the parent, a wide ring on its surface, and two that narrow to the
+/// branch.
+std::vector<Tube> make_tubes(const Skeleton& skeleton, const GrowthParameters& parameters);
 
 } // namespace kokage
