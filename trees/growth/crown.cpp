@@ -20,8 +20,8 @@ Crown::Crown(const GrowthParameters& p)
       clumping_(float(p.crown_clumping)), seed_(p.seed) {
     const double projection = p.leaves * mean_leaf_area(p) / p.leaf_area_index;
     // The hollows between billows take more of the crown's projection than shoots beyond the outline add: measured over seeds, the
-    // crown that grows has 0.85 times the projection of its nominal outline. A seedling is never smaller than its leaves.
-    constexpr double grown_share = 0.85;
+    // crown that grows has 0.92 times the projection of its nominal outline. A seedling is never smaller than its leaves.
+    constexpr double grown_share = 0.92;
     const double smallest = 0.8 * (p.leaf_length + p.shoot_length);
     radius_m = float(std::max(std::sqrt(projection / (grown_share * kPiDouble)), smallest));
     height_m = float(2 * radius_m * p.height_to_width);
