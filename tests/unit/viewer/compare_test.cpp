@@ -1,0 +1,69 @@
+// `kokage compare` on pictures.
+#include "common/scene/image_file.h"
+#include "tests/support/program_run.h"
+
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+Image grey_ramp(float offset) {
+    Image image(8, 4, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = 0.25f + 0.5f * float(i) / float(image.pixels.size()) + offset;
+    return image;
+}
+
+TEST(Compare, EqualPicturesHaveNoError) {
+    TemporaryFolder folder;
+    save_image(folder / "a.exr", grey_ramp(0));
+    const ProgramRun run =
+        run_kokage({"compare", "a.exr", "a.exr", "--report", "r.json", "-o", "map.png"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const auto report = nlohmann::json::parse(read_text(folder / "r.json"));
+    for (const char* figure : {"mean", "rms", "p95", "max", "bias", "mean_relative"})
+        EXPECT_EQ(report["error"][figure], 0) << figure;
+    EXPECT_EQ(folder.files(), std::vector<std::string>({"a.exr", "map.png", "r.json"}));
+}
+
+TEST(Compare, FiguresAndMapAreWritten) {
+    TemporaryFolder folder;
+    save_image(folder / "a.exr", grey_ramp(0.125f));
+    save_image(folder / "b.exr", grey_ramp(0));
+    const ProgramRun run =
+        run_kokage({"compare", "a.exr", "b.exr", "--report", "r.json", "-o", "map.png"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const auto report = nlohmann::json::parse(read_text(folder / "r.json"));
+    EXPECT_NEAR(double(report["error"]["bias"]), 0.125, 1e-6);
+    EXPECT_NEAR(double(report["error"]["rms"]), 0.125, 1e-6);
+    EXPECT_NE(run.output.find("error of 256         mean 31.8"), std::string::npos) << run.output; // 0.125 x 255
+    const Image map = load_image(folder / "map.png");
+    EXPECT_EQ(map.width, 8);
+    EXPECT_EQ(map.height, 4);
+}
+
+TEST(Compare, WhatCannotBeComparedIsSaidInOneLine) {
+    TemporaryFolder folder;
+    save_image(folder / "a picture.png", grey_ramp(0));
+    save_image(folder / "small.png", Image(2, 2, 3));
+    std::ofstream(folder / "broken.png") << "this is no picture";
+    const std::vector<std::vector<std::string>> wrongs = {
+        {"compare"},
+        {"compare", "a picture.png"},
+        {"compare", "a picture.png", "missing.png"},
+        {"compare", "a picture.png", "small.png"},
+        {"compare", "a picture.png", "broken.png"},
+        {"compare", "a picture.png", "."},
+        {"compare", "a picture.png", "a picture.png", "-o", "map"},
+        {"compare", "a picture.png", "small.png", "-o", "a picture.png"},
+        {"compare", "a picture.png", "a picture.png", "--report", "nowhere/r.json"}};
+    for (const auto& words : wrongs) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2) << words.back();
+        EXPECT_TRUE(is_one_complaint(run.errors)) << words.back();
+    }
+    EXPECT_EQ(folder.files(), std::vector<std::string>({"a picture.png", "broken.png", "small.png"}));
+}
+
+} // namespace
+} // namespace kokage

@@ -1,0 +1,91 @@
+// `kokage compare`: how far two pictures, or two shadings of a tree, are apart.
+#include "common/scene/image_file.h"
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+#include "reflection/compare_images.h"
+#include "viewer/command.h"
+#include "viewer/output_check.h"
+#include "viewer/values.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+using Json = nlohmann::ordered_json;
+
+struct CompareOptions {
+    std::filesystem::path picture, reference, error_map, report;
+};
+
+void print_figures(const char* what, const DifferenceFigures& f, double unit) {
+    std::printf("%-20s mean %.4g, RMS %.4g, 95 %% below %.4g, largest %.4g, bias %+.4g\n", what, unit * f.mean,
+                unit * f.rms, unit * f.p95, unit * f.max, unit * f.bias);
+}
+
+Json figures_json(const DifferenceFigures& f) {
+    return {{"mean", f.mean}, {"rms", f.rms},   {"p95", f.p95},
+            {"max", f.max},   {"bias", f.bias}, {"mean_relative", f.relative}};
+}
+
+Image clamped(Image image) {
+    for (float& value : image.pixels)
+        value = std::clamp(value, 0.f, 1.f);
+    return image;
+}
+
+void compare_pictures(const CompareOptions& options, const CommandContext& context) {
+    // As stored, without alpha: 8-bit pictures are compared as they are shown, float pictures as radiance.
+    const ImageLoading as_stored{.meaning = PixelMeaning::data, .channels = 3};
+    const Image picture = load_image(options.picture, as_stored), reference = load_image(options.reference, as_stored);
+    const ImageComparison whole = compare_images(picture, reference);
+    const ImageComparison shown = compare_images(clamped(picture), clamped(reference));
+    std::printf("%-20s %.4g %%\n", "mean relative error", 100 * whole.all.relative);
+    print_figures("error", whole.all, 1);
+    print_figures("error of 256", shown.all, 255);
+    std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
+    if (whole.skipped_values > 0)
+        std::printf("%s values are not finite and are in no figure\n", count_text(whole.skipped_values).c_str());
+    if (!options.error_map.empty()) {
+        save_image(options.error_map, whole.map, {.png_encoding = PngEncoding::as_is});
+        if (!context.quiet)
+            std::printf("error map: %s (brightest at %.4g)\n", options.error_map.c_str(), double(whole.map_scale));
+    }
+    if (!options.report.empty()) {
+        const Json report = {{"picture", options.picture.string()},
+                             {"reference", options.reference.string()},
+                             {"error", figures_json(whole.all)},
+                             {"error_of_1_clamped", figures_json(shown.all)},
+                             {"largest_error_at", {whole.max_x, whole.max_y}},
+                             {"values_not_finite", whole.skipped_values}};
+        write_file(options.report, report.dump(2) + "\n");
+    }
+}
+
+} // namespace
+
+Command compare_command(CLI::App& program) {
+    const auto options = std::make_shared<CompareOptions>();
+    CLI::App* app = program.add_subcommand("compare", "Error figures and an error map of two pictures of one size");
+    app->add_option("A", options->picture, "What is judged: a picture (.png, .exr, .hdr, .jpg, ...)")
+        ->required()
+        ->type_name("FILE");
+    app->add_option("B", options->reference, "The reference, of the same kind")->required()->type_name("FILE");
+    app->add_option("-o,--error-map", options->error_map, "Where to write the errors in false colours")
+        ->type_name("MAP.png");
+    app->add_option("--report", options->report, "Where to write the figures")->type_name("FILE.json");
+    return {app, [options](const CommandContext& context) {
+                if (!options->error_map.empty())
+                    check_output(options->error_map, "the error map", {".png"});
+                if (!options->report.empty())
+                    check_output(options->report, "the report", {".json"});
+                check_distinct({options->picture, options->error_map, options->report});
+                check_distinct({options->reference, options->error_map, options->report});
+                compare_pictures(*options, context);
+            }};
+}
+
+} // namespace kokage
