@@ -70,6 +70,7 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
 Command compare_command(CLI::App& program) {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* app = program.add_subcommand("compare", "Error figures and an error map of two pictures of one size");
+    app->footer("\nExample: kokage compare fast.png truth.png -o errors.png");
     app->add_option("A", options->picture, "What is judged: a picture (.png, .exr, .hdr, .jpg, ...)")
         ->required()
         ->type_name("FILE");

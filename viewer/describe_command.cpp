@@ -118,6 +118,7 @@ Command describe_command(CLI::App& program) {
     const auto source = std::make_shared<TreeSource>();
     CLI::App* app =
         program.add_subcommand("describe", "What is found in a tree: foliage, leaves, branching, sizes, colours");
+    app->footer("\nExample: kokage describe tree.glb");
     app->add_option("TREE", source->name, "A tree's file (.glb, .gltf), or a species to grow")
         ->type_name("NAME")
         ->required();

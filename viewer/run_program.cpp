@@ -7,12 +7,40 @@
 #include <algorithm>
 #include <cstdio>
 #include <iostream>
+#include <memory>
 #include <new>
+#include <sstream>
 
 namespace kokage {
 namespace {
 
 constexpr int kInternalError = 1, kInputError = 2, kStopped = 130;
+
+/// Help whose descriptions are broken into lines, each under the first.
+class WrappedFormatter : public CLI::Formatter {
+  public:
+    WrappedFormatter() { column_width(kNameColumns); }
+    std::string make_option_desc(const CLI::Option* option) const override {
+        return wrapped(CLI::Formatter::make_option_desc(option));
+    }
+
+  private:
+    static constexpr std::size_t kNameColumns = 30, kTextColumns = 80;
+    static std::string wrapped(const std::string& text) {
+        std::istringstream words(text);
+        std::string result, word;
+        for (std::size_t column = 0; words >> word; column += word.size() + 1) {
+            if (column > 0 && column + word.size() > kTextColumns) {
+                result += '\n';
+                column = 0;
+            } else if (column > 0) {
+                result += ' ';
+            }
+            result += word;
+        }
+        return result;
+    }
+};
 
 int complain(std::string message, int status) {
     // One line, whatever a library put into its message.
@@ -50,15 +78,15 @@ int run_program(int argc, const char* const* argv) {
     CLI::App program("Fast, accurate shading of trees: the light on every leaf, from the crown's edge to its core.",
                      "kokage");
     program.set_version_flag("--version", "kokage " KOKAGE_VERSION);
-    program.footer("'kokage COMMAND --help' tells a command's options.");
-    program.get_formatter()->column_width(34);
+    program.footer("\n'kokage COMMAND --help' tells a command's options.");
+    program.formatter(std::make_shared<WrappedFormatter>());
     const std::vector<Command> commands = all_commands(program);
     bool quiet = false;
     int threads = 0;
     for (const Command& command : commands) {
         command.app->add_flag("--quiet", quiet, "Print no progress and no summary")->group("General");
         command.app->add_option("--threads", threads, "Threads to use; 0 = as many as the machine has")
-            ->check(CLI::Range(0, 4096))
+            ->check(CLI::Range(0, 4096).description(""))
             ->type_name("N")
             ->capture_default_str()
             ->group("General");

@@ -51,6 +51,22 @@ Environment gradient(const std::string& values) {
     return gradient_environment(color(0), color(3), color(6));
 }
 
+/// Where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else its lowest
+/// point.
+float foot_height(const Tree& tree) {
+    float lowest = std::numeric_limits<float>::max();
+    if (tree.branching_known)
+        for (const Branch& branch : tree.skeleton.branches)
+            if (branch.parent < 0)
+                lowest = std::min(lowest, branch.nodes.front().position.y);
+    if (lowest != std::numeric_limits<float>::max())
+        return lowest;
+    for (const TreePart& part : tree.parts)
+        for (const glm::vec3& position : part.positions)
+            lowest = std::min(lowest, position.y);
+    return lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
+}
+
 /// What needs no file, lights left out. Empty for a file.
 std::optional<Environment> made_environment(const Surroundings& surroundings) {
     std::string values;
@@ -88,9 +104,15 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
         ->allow_extra_args(false)
         ->group("Light");
     app.add_flag("--strict", s.strict, "Images: refuse bad pixels instead of repairing them")->group("Light");
-    app.add_flag("--ground,!--no-ground", s.ground,
-                 "A diffuse ground under the tree takes part in the light (otherwise under the sky alone)")
-        ->group("Light");
+    const auto ground = [&](const char* name, bool value, const char* what) {
+        return app
+            .add_flag_function(
+                name, [&s, value](std::int64_t) { s.ground = value; }, what)
+            ->group("Light");
+    };
+    CLI::Option* with =
+        ground("--ground", true, "A diffuse ground under the tree takes part in the light (always so under the sky)");
+    ground("--no-ground", false, "No ground, not under the sky either")->excludes(with);
     app.add_option("--ground-albedo", s.ground_albedo, "Its colour: one number or R,G,B from 0 to 1 (otherwise 0.2)")
         ->type_name("COLOR")
         ->group("Light");
@@ -136,11 +158,7 @@ std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& en
     Ground ground;
     if (!s.ground_albedo.empty())
         ground.albedo = color_from(s.ground_albedo, "--ground-albedo");
-    float lowest = std::numeric_limits<float>::max();
-    for (const TreePart& part : tree.parts)
-        for (const glm::vec3& position : part.positions)
-            lowest = std::min(lowest, position.y);
-    ground.height_m = lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
+    ground.height_m = foot_height(tree);
     return ground;
 }
 

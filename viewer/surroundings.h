@@ -29,7 +29,7 @@ void check_surroundings(const Surroundings& surroundings);
 /// Builds or loads it. Point lights are placed relative to `origin` (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
 
-/// The ground that takes part in the transport, at the tree's lowest point; empty if there is none.
+/// The ground that takes part in the transport, at the foot of the tree; empty if there is none.
 std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, const Tree& tree);
 
 } // namespace kokage

@@ -1,0 +1,210 @@
+#include "viewer/shade_options.h"
+#include "common/services/error.h"
+#include "viewer/output_check.h"
+#include "viewer/values.h"
+
+#include <cmath>
+#include <cstdlib>
+
+namespace kokage {
+namespace fs = std::filesystem;
+namespace {
+
+void add_method_options(CLI::App& app, ShadeOptions& o) {
+    app.add_option("--method", o.method,
+                   "bundles (line bundles: fast and accurate), light-maps, path-traced (the truth) or paper")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--error", o.error,
+                   "Mean relative error of the leaves to aim at, from which the effort follows (otherwise 0.05)")
+        ->type_name("E")
+        ->group("Method");
+    app.add_option("--effort", o.shading.effort,
+                   "The effort itself, in place of --error: bundles: directions; path-traced: paths a leaf side; 0 = "
+                   "from --error")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--maps", o.shading.maps, "Light-environment maps; 0 = the method's own number (paper: 15)")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--bands", o.shading.bands, "Bands of spherical harmonics of a map, 1 to 40")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--gather", o.gather,
+                   "How a leaf reads maps: cosine (two-sided cosine) or rule (the paper's equations 2 and 3)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--bounces", o.shading.max_bounces, "Most bounces of light; 0 = until they no longer matter")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--seed", o.shading.seed, "Seed of the method's random numbers (another tree: --set seed=N)")
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("Method");
+}
+
+void add_material_options(CLI::App& app, ShadeOptions& o) {
+    const auto color = [&](const char* name, std::string& value, const char* what) {
+        app.add_option(name, value, std::string(what) + ", one number or R,G,B (otherwise the material's own)")
+            ->type_name("COLOR")
+            ->group("Material");
+    };
+    color("--leaf-reflectance", o.leaf_reflectance, "What leaves reflect");
+    color("--leaf-transmittance", o.leaf_transmittance, "What leaves let through");
+    color("--bark-albedo", o.bark_albedo, "What bark reflects");
+}
+
+void add_output_options(CLI::App& app, ShadeOptions& o) {
+    app.add_option("-o,--output", o.output, "The shaded tree")->type_name("OUT.glb")->group("Output");
+    app.add_flag("--split-sides", o.split_sides,
+                 "Write every leaf as two single-sided sheets, for viewers that show one colour a leaf")
+        ->group("Output");
+    app.add_option("--image", o.image, "A picture: .png, or linear radiance as .exr or .hdr")
+        ->type_name("PIC.png")
+        ->group("Output");
+    app.add_option("--image-size", o.image_size, "Its size")->type_name("WxH")->capture_default_str()->group("Output");
+    app.add_option("--samples", o.picture.samples, "Its camera rays a pixel")
+        ->type_name("N")
+        ->check(CLI::Range(1, 65536).description(""))
+        ->capture_default_str()
+        ->group("Output");
+    app.add_option("--exposure", o.picture.exposure_stops,
+                   "Its exposure in stops (otherwise automatic); not for .exr and .hdr")
+        ->type_name("STOPS")
+        ->group("Output");
+    app.add_option("--report", o.report, "What was done, counted, timed and skipped")
+        ->type_name("R.json")
+        ->group("Output");
+}
+
+void complete_method(ShadeOptions& o) {
+    ShadingOptions& s = o.shading;
+    s.method = method_from_name(o.method);
+    if (o.gather != "rule" && o.gather != "cosine")
+        throw InputError("--gather: '" + o.gather + "' is not known; give rule or cosine");
+    s.gather = o.gather == "rule" ? GatherRule::rule : GatherRule::cosine;
+    if (o.error && s.method == Method::paper)
+        throw InputError("--error: the paper's method can't aim at an error; leave it out, or choose another --method");
+    if (o.error && s.effort > 0)
+        throw InputError("--error and --effort contradict one another; leave one of them out");
+    if (o.error && !(*o.error > 0 && *o.error <= 10))
+        throw InputError("--error: it must be above 0 (0.05 is 5 %) and at most 10");
+    s.error = o.error.value_or(0.05);
+    if (s.effort < 0 || s.maps < 0 || s.max_bounces < 0)
+        throw InputError("--effort, --maps and --bounces can't be negative");
+    if (s.bands < 1 || s.bands > 40)
+        throw InputError("--bands: " + std::to_string(s.bands) + " is not from 1 to 40");
+}
+
+void complete_materials(const ShadeOptions& o) {
+    glm::vec3 sum(0.f);
+    if (!o.leaf_reflectance.empty())
+        sum += color_from(o.leaf_reflectance, "--leaf-reflectance");
+    if (!o.leaf_transmittance.empty())
+        sum += color_from(o.leaf_transmittance, "--leaf-transmittance");
+    if (glm::any(glm::greaterThan(sum, glm::vec3(1.f + 1e-6f))))
+        throw InputError("--leaf-reflectance and --leaf-transmittance add up to more than 1: leaves would give more "
+                         "light than they get");
+    if (!o.bark_albedo.empty())
+        color_from(o.bark_albedo, "--bark-albedo");
+}
+
+/// With none named, all three are written, called after the tree; otherwise those that are named.
+void complete_outputs(ShadeOptions& o) {
+    if (o.output.empty() && o.image.empty() && o.report.empty()) {
+        // Beside a file of one's own, "oak.glb" would be overwritten.
+        const std::string stem = o.tree.stem() + (o.tree.is_species() ? "" : "-shaded");
+        o.output = stem + ".glb";
+        o.image = stem + ".png";
+        o.report = stem + ".json";
+    }
+    const Size size = size_from(o.image_size, "--image-size");
+    o.picture.width = size.width;
+    o.picture.height = size.height;
+    o.picture.seed = o.shading.seed;
+    if (o.picture.exposure_stops && !(std::abs(*o.picture.exposure_stops) <= 100))
+        throw InputError("--exposure: it must be from -100 to 100 stops");
+    if (o.surroundings.ground == false)
+        o.picture.ground = PictureGround::none;
+    if (!o.output.empty())
+        check_output(o.output, "the shaded tree", {".glb"});
+    else if (o.split_sides)
+        throw InputError("--split-sides shapes the shaded tree, which is not written; add -o OUT.glb");
+    if (!o.image.empty())
+        check_output(o.image, "the picture", {".png", ".exr", ".hdr"});
+    if (!o.report.empty())
+        check_output(o.report, "the report", {".json"});
+    const fs::path tree = o.tree.is_species() ? "" : fs::path(o.tree.name);
+    check_distinct({tree, o.output, o.image, o.report});
+    check_distinct({fs::path(o.surroundings.environment), o.output, o.image, o.report});
+}
+
+/// Names that are no file here are looked for in the data folder.
+void find_in_data(ShadeOptions& o) {
+    if (o.data.empty())
+        return;
+    std::error_code ignored;
+    if (!fs::is_directory(o.data, ignored))
+        throw InputError("--data (or KOKAGE_DATA): there is no folder '" + o.data.string() + "'");
+    for (std::string* name : {&o.tree.name, &o.surroundings.environment})
+        if (!fs::exists(*name, ignored) && fs::path(*name).is_relative() &&
+            fs::is_regular_file(o.data / *name, ignored))
+            *name = (o.data / *name).string();
+}
+
+} // namespace
+
+void add_shade_options(CLI::App& app, ShadeOptions& o) {
+    app.add_option("TREE", o.tree.name, "A species to grow, or a tree's file (.glb, .gltf)")
+        ->type_name("NAME")
+        ->capture_default_str();
+    app.add_option("--data", o.data, "A folder in which TREE and --environment are looked for too")
+        ->type_name("FOLDER")
+        ->envname("KOKAGE_DATA");
+    add_growing_options(app, o.tree);
+    add_loading_options(app, o.tree);
+    add_surroundings_options(app, o.surroundings);
+    add_method_options(app, o);
+    add_material_options(app, o);
+    add_output_options(app, o);
+}
+
+void complete_shade_options(ShadeOptions& o) {
+    find_in_data(o);
+    complete_method(o);
+    complete_materials(o);
+    check_tree_source(o.tree);
+    check_surroundings(o.surroundings);
+    complete_outputs(o);
+}
+
+void override_optics(const ShadeOptions& o, PatchScene& scene) {
+    std::optional<glm::vec3> reflectance, transmittance, bark;
+    if (!o.leaf_reflectance.empty())
+        reflectance = color_from(o.leaf_reflectance, "--leaf-reflectance");
+    if (!o.leaf_transmittance.empty())
+        transmittance = color_from(o.leaf_transmittance, "--leaf-transmittance");
+    if (!o.bark_albedo.empty())
+        bark = color_from(o.bark_albedo, "--bark-albedo");
+    for (const Patch& patch : scene.patches) {
+        Optics& optics = scene.optics[patch.optics];
+        if (patch.kind == PatchKind::bark) {
+            optics.reflectance = bark.value_or(optics.reflectance);
+            continue;
+        }
+        optics.reflectance = reflectance.value_or(optics.reflectance);
+        optics.transmittance = transmittance.value_or(optics.transmittance);
+        if (glm::any(glm::greaterThan(optics.reflectance + optics.transmittance, glm::vec3(1.f + 1e-6f))))
+            throw InputError(
+                "a leaf's reflectance and transmittance add up to more than 1 with the material's own other half; "
+                "give both --leaf-reflectance and --leaf-transmittance");
+    }
+}
+
+} // namespace kokage
