@@ -1,0 +1,25 @@
+#pragma once
+// Reflection lobes and their zonal coefficients (zonal.h), analytic for every l.
+#include <vector>
+
+namespace kokage {
+
+/// Clamped cosine max(t, 0), not normalised: irradiance of a surface. k_0 = pi, k_1 = 2 pi/3, k_2 = pi/4, odd l > 1: 0.
+/// Ramamoorthi and Hanrahan 2001, "An Efficient Representation for Irradiance Environment Maps", eq 8, there times
+/// sqrt(4 pi/(2l+1)).
+std::vector<double> cosine_lobe(int bands);
+
+/// |t|: the sum of what both sides of a leaf receive. Even l: twice the clamped cosine's; odd l: 0.
+std::vector<double> two_sided_cosine_lobe(int bands);
+
+/// Phong's lobe (exponent+1)/(2 pi) max(t, 0)^exponent, normalised to 1. exponent >= 0.
+/// k_0 = 1, k_1 = (L+1)/(L+2), k_{l+2} = k_l (L-l)/(L+l+3), from integrating Bonnet's recurrence by parts.
+std::vector<double> phong_lobe(int bands, double exponent);
+/// Its value between unit directions a and b, from their squared distance |a-b|^2: exp(L log1p(-|a-b|^2/2)), which
+/// keeps its digits for large exponents where a rounded dot product would not.
+double phong_lobe_value(double exponent, double squared_distance);
+
+/// Uniform over a cone, normalised to 1: the disc of a sun. half_angle in radians, 0 (all k_l = 1) to pi.
+std::vector<double> cone_lobe(int bands, double half_angle);
+
+} // namespace kokage
