@@ -1,4 +1,6 @@
 #include "tests/benchmark/environments.h"
+#include "common/environment/analytic_sky.h"
+#include "common/environment/load_environment.h"
 #include "common/services/random.h"
 
 #include <cmath>
@@ -8,14 +10,28 @@ namespace kokage {
 
 namespace {
 
-// The sun of the benchmark: 50 degrees high, to the south-east of the crown.
-constexpr float kSunElevation = 50.f, kSunAzimuth = 40.f;
+// Written out although some are defaults: a stored reference belongs to these values.
+Environment daylight() {
+    Daylight settings;
+    settings.sun_azimuth_degrees = 135;
+    settings.sun_elevation_degrees = 50;
+    settings.turbidity = 3;
+    settings.width = 256;
+    return analytic_sky(settings);
+}
 
-Image constant_image(const glm::vec3& radiance) {
-    Image image(1, 1, 3);
-    for (int c = 0; c < 3; ++c)
-        image.at(0, 0)[c] = radiance[glm::length_t(c)];
-    return image;
+Environment hotel_room(const std::filesystem::path& data_folder) {
+    EnvironmentLoading loading;
+    loading.max_width = 4096;
+    loading.splitting.brightness_ratio = 8;
+    loading.splitting.gap_degrees = 1.5;
+    loading.splitting.least_share = 0.005;
+    loading.splitting.max_lights = 64;
+    loading.splitting.max_texels = 64;
+    EnvironmentReport report;
+    Environment environment = load_environment(lamp_lit_file(data_folder), report, loading);
+    environment.description = "interior_hotel.exr"; // without the folder, which is the user's own business
+    return environment;
 }
 
 /// The CIE standard overcast sky, L = L_zenith (1 + 2 sin elevation) / 3, bluish; black below the horizon.
@@ -35,9 +51,7 @@ Image overcast_sky(float zenith_radiance) {
 
 /// A dim grey sky over a ground, which lights are added to.
 Environment dim_sky(std::string description) {
-    Environment environment;
-    environment.remainder = constant_image(glm::vec3(0.15f));
-    environment.has_lower_half = true;
+    Environment environment = constant_environment(glm::vec3(0.15f));
     environment.description = std::move(description);
     return environment;
 }
@@ -78,18 +92,17 @@ std::filesystem::path lamp_lit_file(const std::filesystem::path& data_folder) {
 }
 
 Environment make_bench_environment(BenchLight light, const std::filesystem::path& data_folder) {
-    (void)data_folder;
     switch (light) {
     case BenchLight::sky_sun:
-        break;
+        return daylight();
     case BenchLight::sky_sun_relit: {
-        Environment environment = make_bench_environment(BenchLight::sky_sun, data_folder);
+        Environment environment = daylight();
         environment.remainder = overcast_sky(0.8f);
         environment.description = "CIE overcast sky with the sun of the analytic sky";
         return environment;
     }
     case BenchLight::lamp_lit:
-        break;
+        return hotel_room(data_folder);
     case BenchLight::one_light:
         return sky_with_lights(1);
     case BenchLight::many_lights:
@@ -97,12 +110,9 @@ Environment make_bench_environment(BenchLight light, const std::filesystem::path
     case BenchLight::point_light:
         return sky_with_point_light();
     case BenchLight::furnace:
-        break;
+        return constant_environment(glm::vec3(1.f));
     }
-    Environment furnace;
-    furnace.remainder = constant_image(glm::vec3(1.f));
-    furnace.description = "radiance 1 from everywhere";
-    return furnace;
+    return {};
 }
 
 } // namespace kokage

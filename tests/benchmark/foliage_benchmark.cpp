@@ -1,1 +1,180 @@
 #include "tests/benchmark/foliage_benchmark.h"
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+#include "common/services/parallel.h"
+#include "common/services/stopwatch.h"
+#include "tests/benchmark/benchmark_plan.h"
+#include "tests/benchmark/calibration.h"
+#include "tests/benchmark/effort_plot.h"
+#include "tests/benchmark/find_reference.h"
+#include "tests/benchmark/foliage_tables.h"
+#include "tests/benchmark/measure.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <iomanip>
+#include <nlohmann/json.hpp>
+#include <ostream>
+
+namespace kokage {
+
+namespace {
+
+std::filesystem::path data_folder(const FoliageBenchmarkOptions& options) {
+    if (!options.data_folder.empty())
+        return options.data_folder;
+    const char* folder = std::getenv("KOKAGE_DATA");
+    return folder ? folder : "";
+}
+
+ReferenceOptions reference_options(const FoliageBenchmarkOptions& options) {
+    ReferenceOptions reference;
+    reference.stored_folder = options.references_folder.empty() ? std::filesystem::path(KOKAGE_BENCHMARK_REFERENCES)
+                                                                : options.references_folder;
+    reference.cache_folder = options.cache_folder.empty() ? options.output_folder / "references" : options.cache_folder;
+    reference.paths_per_side = options.reference_paths;
+    return reference;
+}
+
+/// Everything that a run collects, and how it is told.
+class Run {
+  public:
+    Run(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out)
+        : options_(options), progress_(progress), out_(out), scenes_(data_folder(options)) {}
+
+    int execute() {
+        std::filesystem::create_directories(options_.output_folder);
+        calibration_ = calibration_seconds();
+        out_ << "calibration loop: " << std::fixed << std::setprecision(3) << calibration_ << " CPU-s\n" << std::flush;
+        const std::vector<PlannedScene> plan = benchmark_plan(options_.quick);
+        for (std::size_t i = 0; i < plan.size(); ++i) {
+            out_ << "[" << i + 1 << "/" << plan.size() << "] " << to_string(plan[i].name) << "\n" << std::flush;
+            if (const std::string reason = scenes_.why_not(plan[i].name); !reason.empty())
+                note("skipped: " + to_string(plan[i].name) + ": " + reason);
+            else
+                run_scene(plan[i]);
+            write();
+        }
+        const std::string plots =
+            options_.plots ? plot_efforts(records_, options_.output_folder) : "plots skipped: not asked for";
+        note(plots);
+        write();
+        out_ << "\n"
+             << summary_table(summarise(records_)) << "\nwritten to " << options_.output_folder.string() << " in "
+             << std::setprecision(0) << watch_.wall() << " s\n";
+        return failures_ == 0 ? 0 : 1;
+    }
+
+  private:
+    void run_scene(const PlannedScene& planned) {
+        const BenchScene scene = scenes_.make(planned.name);
+        const SceneTruth truth = truth_for(scene);
+        // Where there is a reference of the relit scene, relighting is judged by it.
+        std::optional<SceneTruth> relit_truth;
+        Environment relit = with_another_sky(*scene.environment);
+        if (planned.name.light == BenchLight::sky_sun && planned.name.leaves == 30000 &&
+            planned.name.material == BenchMaterial::realistic) {
+            const BenchScene other = scenes_.make({BenchLight::sky_sun_relit, 30000, BenchMaterial::realistic});
+            relit = *other.environment;
+            relit_truth = truth_for(other);
+        }
+        for (const PlannedEffort& effort : planned.efforts) {
+            progress_.throw_if_stopped();
+            try {
+                records_.push_back(
+                    measure(scene, effort, truth, relit, relit_truth ? &*relit_truth : nullptr, progress_));
+                tell(records_.back());
+            } catch (const Stopped&) {
+                throw;
+            } catch (const std::exception& error) { // one method's failure must not hide the others' figures
+                ++failures_;
+                note("failed: " + std::string(method_name(effort.method)) + " on " + to_string(planned.name) + ": " +
+                     error.what());
+            }
+        }
+    }
+
+    SceneTruth truth_for(const BenchScene& scene) {
+        if (scene.name.light == BenchLight::furnace)
+            return furnace_truth(scene.patches.leaf_count);
+        const ReferenceOptions reference = reference_options(options_);
+        if (std::optional<Reference> found = find_reference(scene, reference))
+            return truth_of(*found);
+        out_ << "  no stored reference of this very scene: tracing one (" << reference.paths_per_side
+             << " paths a leaf side)\n"
+             << std::flush;
+        return truth_of(find_or_make_reference(scene, reference, progress_));
+    }
+
+    void tell(const FoliageRecord& record) {
+        out_ << "  " << std::left << std::setw(12) << method_name(record.method) << std::right << std::setw(8)
+             << std::setprecision(record.effort < 1 ? 2 : 0) << record.effort << " " << std::left << std::setw(12)
+             << record.effort_kind << std::right << std::setprecision(3) << std::setw(9) << record.cpu_seconds
+             << " CPU-s   MRE " << std::setprecision(2) << std::setw(6) << 100 * record.accuracy.mre << " %   bias "
+             << std::showpos << 100 * record.accuracy.bias << std::noshowpos << " %"
+             << (record.judged() ? "" : "   (not judged: below 5 x the reference's noise)") << "\n"
+             << std::flush;
+    }
+
+    void note(const std::string& line) {
+        notes_.push_back(line);
+        out_ << "  " << line << "\n" << std::flush;
+    }
+
+    /// What is known so far, so that a run that is stopped leaves what it had measured.
+    void write() const {
+        nlohmann::json records = nlohmann::json::array();
+        for (const FoliageRecord& record : records_)
+            records.push_back(to_json(record));
+        write_file(options_.output_folder / "foliage.json", records.dump(1) + "\n");
+        std::string text = "# Benchmark of foliage shading\n\nCalibration loop: " + std::to_string(calibration_) +
+                           " CPU-s. " + std::to_string(thread_count()) + " threads.\n\n" +
+                           summary_table(summarise(records_)) + "\n" + record_table(records_);
+        for (const std::string& line : notes_)
+            text += "\n- " + line;
+        write_file(options_.output_folder / "foliage.md", text + "\n");
+    }
+
+    const FoliageBenchmarkOptions& options_;
+    Progress& progress_;
+    std::ostream& out_;
+    BenchScenes scenes_;
+    Stopwatch watch_;
+    double calibration_ = 0;
+    std::vector<FoliageRecord> records_;
+    std::vector<std::string> notes_;
+    int failures_ = 0;
+};
+
+} // namespace
+
+int run_foliage_benchmark(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out) {
+    if (options.threads > 0)
+        set_thread_count(options.threads);
+    return Run(options, progress, out).execute();
+}
+
+int make_foliage_references(const FoliageBenchmarkOptions& options, const std::vector<std::string>& only,
+                            Progress& progress, std::ostream& out) {
+    if (options.threads > 0)
+        set_thread_count(options.threads);
+    BenchScenes scenes(data_folder(options));
+    const ReferenceOptions reference = reference_options(options);
+    for (const PlannedScene& planned : benchmark_plan(false)) {
+        const bool wanted = only.empty() || std::find(only.begin(), only.end(), to_string(planned.name)) != only.end();
+        if (planned.name.light == BenchLight::furnace || !wanted)
+            continue;
+        if (const std::string reason = scenes.why_not(planned.name); !reason.empty()) {
+            out << "skipped: " << to_string(planned.name) << ": " << reason << "\n";
+            continue;
+        }
+        const Stopwatch watch;
+        const Reference made = find_or_make_reference(scenes.make(planned.name), reference, progress);
+        out << to_string(planned.name) << ": " << made.paths_per_side << " paths a leaf side, noise " << std::fixed
+            << std::setprecision(3) << 100 * made.noise << " %, " << std::setprecision(1) << watch.cpu() << " CPU-s\n"
+            << std::flush;
+    }
+    return 0;
+}
+
+} // namespace kokage

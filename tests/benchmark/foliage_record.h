@@ -19,8 +19,9 @@ struct FoliageRecord {
     double effort = 0;
     double cpu_seconds = 0; ///< make_transport and the first solve, all threads; the median where it was repeated
     double wall_seconds = 0;
-    double relight_cpu_seconds = 0; ///< a second solve: another environment, the same lights
-    double bytes_per_leaf = 0;      ///< kept between relights
+    std::optional<double>
+        relight_cpu_seconds;   ///< a second solve: another environment, the same lights; empty if not measured
+    double bytes_per_leaf = 0; ///< kept between relights
     Accuracy accuracy;
     std::optional<double> estimated_error; ///< by the method itself, of the MRE
     double reference_noise = 0;            ///< of the reference, as an MRE; 0 where the truth is known exactly
