@@ -36,7 +36,7 @@ std::vector<PlannedScene> quick_plan() {
         {{sky_sun, 30000, realistic}, main},
         {{sky_sun, 30000, bright}, main},
         {{lamp_lit, 30000, realistic}, Efforts().bundles({16, 32, 64}).paths({16, 64})},
-        {{furnace, 30000, BenchMaterial::furnace}, Efforts().bundles({32})},
+        {{furnace, 30000, BenchMaterial::white}, Efforts().bundles({32})},
         {{sky_sun, 5000, realistic}, Efforts().bundles({32}).paths({64}).light_maps({15}).paper({15})},
     };
 }
@@ -65,7 +65,7 @@ std::vector<PlannedScene> full_plan() {
     plan.push_back({{many_lights, 30000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
     plan.push_back({{point_light, 5000, realistic},
                     Efforts().bundles({16, 32, 64, 128}).paths({16, 64, 256}).light_maps({15}).paper({15})});
-    plan.push_back({{furnace, 30000, BenchMaterial::furnace},
+    plan.push_back({{furnace, 30000, BenchMaterial::white},
                     Efforts().bundles({16, 32, 64}).paths({16}).light_maps({15}).paper({15})});
     return plan;
 }

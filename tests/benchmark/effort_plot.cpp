@@ -57,9 +57,11 @@ std::string plot_script(const std::vector<FoliageRecord>& records, const std::st
                << 500 * records.front().reference_noise << " nohead dashtype 2 linecolor 'gray'\n";
     script << "plot ";
     index = 0;
-    for (const auto& [name, curve] : all)
-        script << (index ? ", " : "") << "$data" << index << " with linespoints pointtype " << ++index << " title '"
+    for (const auto& [name, curve] : all) {
+        script << (index ? ", " : "") << "$data" << index << " with linespoints pointtype " << index + 1 << " title '"
                << name << "'";
+        ++index;
+    }
     script << "\n";
     return script.str();
 }

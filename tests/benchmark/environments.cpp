@@ -115,4 +115,16 @@ Environment make_bench_environment(BenchLight light, const std::filesystem::path
     return {};
 }
 
+Environment with_another_sky(const Environment& environment) {
+    Environment other = environment;
+    const Image& from = environment.remainder;
+    const glm::vec3 tint(1.2f, 1.f, 0.8f);
+    for (int y = 0; y < from.height; ++y)
+        for (int x = 0; x < from.width; ++x)
+            for (int c = 0; c < 3; ++c)
+                other.remainder.at(x, y)[c] = tint[glm::length_t(c)] * from.at((x + from.width / 4) % from.width, y)[c];
+    other.description += ", its sky turned and tinted";
+    return other;
+}
+
 } // namespace kokage

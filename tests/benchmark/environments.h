@@ -12,4 +12,7 @@ Environment make_bench_environment(BenchLight light, const std::filesystem::path
 /// Where the lamp-lit scenes' image lies in a data folder.
 std::filesystem::path lamp_lit_file(const std::filesystem::path& data_folder);
 
+/// Another sky of the same lights: turned by a quarter and tinted.
+Environment with_another_sky(const Environment& environment);
+
 } // namespace kokage

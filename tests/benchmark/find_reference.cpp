@@ -1,22 +1,10 @@
 #include "tests/benchmark/find_reference.h"
 #include "common/services/random.h"
-#include "foliage/accuracy.h"
-#include "foliage/method.h"
+#include "foliage/path_traced.h"
 
 namespace kokage {
 
 namespace {
-
-/// One more chunk for one of the halves: an independent estimate of every leaf side.
-std::vector<glm::vec3> trace_chunk(const BenchScene& scene, std::uint64_t paths, std::uint64_t half,
-                                   std::uint64_t chunk, Progress& progress) {
-    ShadingOptions options;
-    options.method = Method::path_traced;
-    options.effort = int(paths);
-    options.seed = hash64(hash64(0x7265666572656e63ull + half) + chunk);
-    const auto transport = make_transport(scene.patches, *scene.tree, options, progress);
-    return leaf_side_radiance(scene.patches, transport->solve(*scene.environment, progress).radiance);
-}
 
 void add_to(std::vector<glm::dvec3>& sums, const std::vector<glm::vec3>& chunk) {
     sums.resize(chunk.size(), glm::dvec3(0.0));
@@ -65,8 +53,11 @@ Reference find_or_make_reference(const BenchScene& scene, const ReferenceOptions
     ReferenceSums sums = load_sums(unfinished, hash, options.paths_per_chunk)
                              .value_or(ReferenceSums{hash, options.paths_per_chunk, 0, {}});
     while (2 * sums.chunks * options.paths_per_chunk < options.paths_per_side) {
-        for (std::uint64_t half = 0; half < 2; ++half)
-            add_to(sums.half[half], trace_chunk(scene, options.paths_per_chunk, half, sums.chunks, progress));
+        const auto chunk =
+            path_trace_reference(scene.patches, *scene.environment, std::uint32_t(2 * options.paths_per_chunk),
+                                 hash64(0x7265666572656e63ull + sums.chunks), progress);
+        add_to(sums.half[0], chunk.first);
+        add_to(sums.half[1], chunk.second);
         ++sums.chunks;
         progress.throw_if_stopped();
         save_sums(unfinished, sums);

@@ -11,7 +11,7 @@ struct ReferenceOptions {
     std::filesystem::path stored_folder; ///< references that came with the source; never written
     std::filesystem::path cache_folder;  ///< references that were made here, and sums of unfinished ones
     std::uint64_t paths_per_side = 1024; ///< of references that must be made
-    std::uint64_t paths_per_chunk = 64;  ///< a side, in each half: how much is lost when the work is stopped
+    std::uint64_t paths_per_chunk = 256; ///< a side, in each half: how much is lost when the work is stopped
 };
 
 /// A reference of this very scene, of at least paths_per_side: the stored one, or the one in the cache, or else it is

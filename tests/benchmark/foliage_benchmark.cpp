@@ -6,11 +6,11 @@
 #include "tests/benchmark/benchmark_plan.h"
 #include "tests/benchmark/calibration.h"
 #include "tests/benchmark/effort_plot.h"
+#include "tests/benchmark/environments.h"
 #include "tests/benchmark/find_reference.h"
 #include "tests/benchmark/foliage_tables.h"
 #include "tests/benchmark/measure.h"
 
-#include <algorithm>
 #include <cstdlib>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -152,29 +152,6 @@ int run_foliage_benchmark(const FoliageBenchmarkOptions& options, Progress& prog
     if (options.threads > 0)
         set_thread_count(options.threads);
     return Run(options, progress, out).execute();
-}
-
-int make_foliage_references(const FoliageBenchmarkOptions& options, const std::vector<std::string>& only,
-                            Progress& progress, std::ostream& out) {
-    if (options.threads > 0)
-        set_thread_count(options.threads);
-    BenchScenes scenes(data_folder(options));
-    const ReferenceOptions reference = reference_options(options);
-    for (const PlannedScene& planned : benchmark_plan(false)) {
-        const bool wanted = only.empty() || std::find(only.begin(), only.end(), to_string(planned.name)) != only.end();
-        if (planned.name.light == BenchLight::furnace || !wanted)
-            continue;
-        if (const std::string reason = scenes.why_not(planned.name); !reason.empty()) {
-            out << "skipped: " << to_string(planned.name) << ": " << reason << "\n";
-            continue;
-        }
-        const Stopwatch watch;
-        const Reference made = find_or_make_reference(scenes.make(planned.name), reference, progress);
-        out << to_string(planned.name) << ": " << made.paths_per_side << " paths a leaf side, noise " << std::fixed
-            << std::setprecision(3) << 100 * made.noise << " %, " << std::setprecision(1) << watch.cpu() << " CPU-s\n"
-            << std::flush;
-    }
-    return 0;
 }
 
 } // namespace kokage

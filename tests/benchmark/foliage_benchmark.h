@@ -5,8 +5,6 @@
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
-#include <string>
-#include <vector>
 
 namespace kokage {
 
@@ -26,10 +24,5 @@ struct FoliageBenchmarkOptions {
 /// are replaced whole. `out` gets progress in words and the summary. Returns 0; 1 if a measurement failed (the others
 /// are still made).
 int run_foliage_benchmark(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out);
-
-/// Makes or continues the references of the plan's scenes (those whose names are in `only`, or all) in the cache
-/// folder, up to reference_paths. May be stopped and started again at any time. Returns 0.
-int make_foliage_references(const FoliageBenchmarkOptions& options, const std::vector<std::string>& only,
-                            Progress& progress, std::ostream& out);
 
 } // namespace kokage

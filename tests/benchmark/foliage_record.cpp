@@ -34,6 +34,7 @@ nlohmann::json to_json(const FoliageRecord& record) {
         {"estimated_error", number(record.estimated_error)},
         {"reference_noise", number(record.reference_noise)},
         {"relight_mre", number(record.relight_mre)},
+        {"paths", number(record.paths)},
         {"judged", record.judged()},
     };
 }

@@ -26,6 +26,7 @@ struct FoliageRecord {
     std::optional<double> estimated_error; ///< by the method itself, of the MRE
     double reference_noise = 0;            ///< of the reference, as an MRE; 0 where the truth is known exactly
     std::optional<double> relight_mre;     ///< of the relit solution, where the relit scene has a reference
+    std::optional<double> paths;           ///< traced in the first solve, if the method traces paths
     double maximum_error = 0;              ///< largest |x - ref| / max(ref, 0.05 mean)
 
     /// True if the error is at least five times the reference's noise; otherwise it says little.

@@ -24,7 +24,7 @@ PatchOptions patch_options(const BenchSceneName& name) {
         options.leaf_optics = Optics{glm::vec3(0.5f), glm::vec3(0.4f)};
         options.bark_albedo = bark;
         break;
-    case BenchMaterial::furnace:
+    case BenchMaterial::white:
         // 0.625 + 0.375 is 1 exactly in binary, so the furnace does not cool by rounding.
         options.leaf_optics = Optics{glm::vec3(0.625f), glm::vec3(0.375f)};
         options.bark_albedo = glm::vec3(1.f);
@@ -43,7 +43,7 @@ std::string_view bench_material_name(BenchMaterial material) {
         return "realistic";
     case BenchMaterial::bright:
         return "bright";
-    case BenchMaterial::furnace:
+    case BenchMaterial::white:
         return "white";
     }
     return "";

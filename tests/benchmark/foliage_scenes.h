@@ -16,7 +16,7 @@ namespace kokage {
 enum class BenchMaterial {
     realistic, ///< rho (.10,.25,.06), tau (.08,.25,.04), bark (.15,.10,.07)
     bright,    ///< rho .5, tau .4, the same bark
-    furnace,   ///< rho .625, tau .375, bark 1: nothing is absorbed
+    white,     ///< rho .625, tau .375, bark 1: nothing is absorbed
 };
 
 enum class BenchLight {

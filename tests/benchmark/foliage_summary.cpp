@@ -131,7 +131,8 @@ void add_path_tracer(std::vector<SummaryFigure>& figures, const std::vector<Foli
     if (!at_64)
         return;
     figures.push_back({"path tracer: million paths a CPU-second, 30000 realistic sky-sun",
-                       2.0 * at_64->leaves * at_64->effort / at_64->cpu_seconds / 1e6, "", 0.4, true});
+                       at_64->paths ? std::optional<double>(*at_64->paths / at_64->cpu_seconds / 1e6) : std::nullopt,
+                       "", 0.4, true});
     figures.push_back({"path tracer: MRE at 64 paths a leaf side, 30000 realistic sky-sun", 100 * at_64->accuracy.mre,
                        "%", 7.0, false});
 }

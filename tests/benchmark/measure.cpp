@@ -32,6 +32,13 @@ double maximum_error(const std::vector<glm::vec3>& sides, const std::vector<glm:
     return largest;
 }
 
+std::optional<double> count_of(const WorkReport& report, const std::string& name) {
+    for (const WorkReport::Count& count : report.counts)
+        if (count.name == name)
+            return double(count.value);
+    return std::nullopt;
+}
+
 } // namespace
 
 SceneTruth furnace_truth(std::size_t leaves) {
@@ -68,6 +75,7 @@ FoliageRecord measure(const BenchScene& scene, const PlannedEffort& effort, cons
             record.accuracy = accuracy(sides, truth.sides, scene.leaf_areas);
             record.maximum_error = maximum_error(sides, truth.sides);
             record.estimated_error = solution.estimated_error;
+            record.paths = count_of(solution.report, "paths");
             record.bytes_per_leaf = double(transport->bytes()) / std::max<std::uint32_t>(1, scene.patches.leaf_count);
         }
         if (cpu.back() > kRelightBelowSeconds)
@@ -84,18 +92,6 @@ FoliageRecord measure(const BenchScene& scene, const PlannedEffort& effort, cons
     if (!relight.empty())
         record.relight_cpu_seconds = median(relight);
     return record;
-}
-
-Environment with_another_sky(const Environment& environment) {
-    Environment other = environment;
-    const Image& from = environment.remainder;
-    const glm::vec3 tint(1.2f, 1.f, 0.8f);
-    for (int y = 0; y < from.height; ++y)
-        for (int x = 0; x < from.width; ++x)
-            for (int c = 0; c < 3; ++c)
-                other.remainder.at(x, y)[c] = tint[glm::length_t(c)] * from.at((x + from.width / 4) % from.width, y)[c];
-    other.description += ", its sky turned and tinted";
-    return other;
 }
 
 } // namespace kokage

@@ -26,7 +26,4 @@ SceneTruth truth_of(const Reference& reference);
 FoliageRecord measure(const BenchScene& scene, const PlannedEffort& effort, const SceneTruth& truth,
                       const Environment& relit, const SceneTruth* relit_truth, Progress& progress);
 
-/// Another sky of the same lights: turned by a quarter and tinted.
-Environment with_another_sky(const Environment& environment);
-
 } // namespace kokage

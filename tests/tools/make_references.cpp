@@ -1,24 +1,65 @@
-// Makes the references of the benchmark's scenes: kokage_make_references CACHE_FOLDER PATHS_A_SIDE THREADS [NAME]...
-// Stop it whenever you like: it goes on where it was. Copy the finished *.reference files to
-// tests/benchmark/references.
+// Makes the references of the benchmark's scenes:
+//
+//     kokage_make_references CACHE_FOLDER PATHS_A_SIDE THREADS [SCENE]...      (all scenes of the full benchmark if
+//     none is named)
+//
+// It takes hours; stop it whenever you like: it goes on where it was. Copy the finished *.reference files to
+// tests/benchmark/references. KOKAGE_DATA must name the data folder for the lamp-lit scenes.
 #include "common/services/error.h"
-#include "tests/benchmark/foliage_benchmark.h"
+#include "common/services/parallel.h"
+#include "common/services/stopwatch.h"
+#include "tests/benchmark/benchmark_plan.h"
+#include "tests/benchmark/find_reference.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <iomanip>
 #include <iostream>
+
+namespace kokage {
+namespace {
+
+std::vector<BenchSceneName> wanted_scenes(const std::vector<std::string>& only) {
+    std::vector<BenchSceneName> names;
+    for (const PlannedScene& planned : benchmark_plan(false)) {
+        const bool wanted = only.empty() || std::find(only.begin(), only.end(), to_string(planned.name)) != only.end();
+        if (wanted && planned.name.light != BenchLight::furnace) // whose truth is known
+            names.push_back(planned.name);
+    }
+    return names;
+}
+
+void make(const std::vector<BenchSceneName>& names, const ReferenceOptions& options) {
+    const char* data = std::getenv("KOKAGE_DATA");
+    BenchScenes scenes(data ? data : "");
+    for (const BenchSceneName& name : names) {
+        if (const std::string reason = scenes.why_not(name); !reason.empty()) {
+            std::cout << "skipped: " << to_string(name) << ": " << reason << std::endl;
+            continue;
+        }
+        const Stopwatch watch;
+        const Reference made = find_or_make_reference(scenes.make(name), options, silent_progress());
+        std::cout << to_string(name) << ": " << made.paths_per_side << " paths a leaf side, noise " << std::fixed
+                  << std::setprecision(3) << 100 * made.noise << " %, " << std::setprecision(1) << watch.cpu()
+                  << " CPU-s" << std::endl;
+    }
+}
+
+} // namespace
+} // namespace kokage
 
 int main(int count, char** arguments) {
     if (count < 4) {
         std::cerr << "usage: kokage_make_references CACHE_FOLDER PATHS_A_SIDE THREADS [SCENE]...\n";
         return 2;
     }
-    kokage::FoliageBenchmarkOptions options;
+    kokage::ReferenceOptions options;
     options.cache_folder = arguments[1];
-    options.reference_paths = std::strtoull(arguments[2], nullptr, 10);
-    options.threads = std::atoi(arguments[3]);
-    const std::vector<std::string> only(arguments + 4, arguments + count);
+    options.stored_folder = arguments[1];
+    options.paths_per_side = std::strtoull(arguments[2], nullptr, 10);
+    kokage::set_thread_count(std::atoi(arguments[3]));
     try {
-        return kokage::make_foliage_references(options, only, kokage::silent_progress(), std::cout);
+        kokage::make(kokage::wanted_scenes({arguments + 4, arguments + count}), options);
     } catch (const kokage::InputError& error) {
         std::cerr << error.what() << "\n";
         return 2;
