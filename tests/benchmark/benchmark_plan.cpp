@@ -61,8 +61,8 @@ std::vector<PlannedScene> full_plan() {
                             Efforts().bundles({16, 32, 64}).paths({16, 64}).light_maps({15, 100}).paper({15, 100})});
         }
     plan.push_back({{sky_sun_relit, 30000, realistic}, Efforts().bundles({16, 32, 64})});
-    plan.push_back({{one_light, 30000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
-    plan.push_back({{many_lights, 30000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
+    plan.push_back({{one_light, 5000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
+    plan.push_back({{many_lights, 5000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
     plan.push_back({{point_light, 5000, realistic},
                     Efforts().bundles({16, 32, 64, 128}).paths({16, 64, 256}).light_maps({15}).paper({15})});
     plan.push_back({{furnace, 30000, BenchMaterial::white},

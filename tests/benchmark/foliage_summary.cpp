@@ -138,8 +138,8 @@ void add_path_tracer(std::vector<SummaryFigure>& figures, const std::vector<Foli
 }
 
 void add_many_lights(std::vector<SummaryFigure>& figures, const std::vector<FoliageRecord>& records) {
-    const auto one = select(records, {"one-light", 30000, "realistic"}, Method::bundles);
-    const auto many = select(records, {"64-lights", 30000, "realistic"}, Method::bundles);
+    const auto one = select(records, {"one-light", 5000, "realistic"}, Method::bundles);
+    const auto many = select(records, {"64-lights", 5000, "realistic"}, Method::bundles);
     if (one.empty() || many.empty())
         return;
     // At 6 % if both curves reach it; else at an error that both do.

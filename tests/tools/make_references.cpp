@@ -38,7 +38,10 @@ void make(const std::vector<BenchSceneName>& names, const ReferenceOptions& opti
             continue;
         }
         const Stopwatch watch;
-        const Reference made = find_or_make_reference(scenes.make(name), options, silent_progress());
+        // A chunk is what is lost when the work is stopped: about a minute.
+        ReferenceOptions of_scene = options;
+        of_scene.paths_per_chunk = name.leaves > 50000 ? 64 : 256;
+        const Reference made = find_or_make_reference(scenes.make(name), of_scene, silent_progress());
         std::cout << to_string(name) << ": " << made.paths_per_side << " paths a leaf side, noise " << std::fixed
                   << std::setprecision(3) << 100 * made.noise << " %, " << std::setprecision(1) << watch.cpu()
                   << " CPU-s" << std::endl;
