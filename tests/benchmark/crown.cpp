@@ -264,8 +264,8 @@ Tree make_bench_crown(std::uint32_t leaves, std::uint64_t seed) {
     tree.skeleton = make_bench_skeleton(twigs, seed);
     const std::size_t first_twig = tree.skeleton.branches.size() - twigs;
 
-    // Successive leaves stand a quarter of a leaf apart; 0.16 m is a leaf's length at 30,000 leaves.
-    const double spacing = 0.28 * 0.16 * std::sqrt(30000.0 / leaves);
+    // Successive leaves stand a fifth of a leaf apart; 0.16 m is a leaf's length at 30,000 leaves.
+    const double spacing = 0.2 * 0.16 * std::sqrt(30000.0 / leaves);
     std::vector<LeafPlace> places;
     for (std::uint32_t twig = 0; twig < twigs; ++twig) {
         Random random(seed, 1'000'000 + std::uint64_t(twig));

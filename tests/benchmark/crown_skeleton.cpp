@@ -148,7 +148,7 @@ class Clumps {
                 tips_.push_back(branch.nodes.back());
     }
     bool hold(const glm::dvec3& point) const {
-        constexpr double radius = 0.92;
+        constexpr double radius = 1.25;
         return tips_.empty() || std::any_of(tips_.begin(), tips_.end(), [&](const glm::dvec3& tip) {
                    return glm::dot(point - tip, point - tip) < radius * radius;
                });

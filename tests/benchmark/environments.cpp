@@ -14,8 +14,8 @@ namespace {
 Environment daylight() {
     Daylight settings;
     settings.sun_azimuth_degrees = 135;
-    settings.sun_elevation_degrees = 50;
-    settings.turbidity = 3;
+    settings.sun_elevation_degrees = 55;
+    settings.turbidity = 2.5;
     settings.width = 256;
     return analytic_sky(settings);
 }
