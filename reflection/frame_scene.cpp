@@ -130,7 +130,7 @@ float photographers_azimuth(const Environment& environment) {
     for (const DistantLight& light : environment.distant_lights)
         if (light.direction.y > 0 && (!main || luminance(light.irradiance) > luminance(main->irradiance)))
             main = &light;
-    constexpr float kDefault = 0.35f, kFromLight = 1.75f; // a hundred degrees: from the side and a little behind
+    constexpr float kDefault = 0.35f, kFromLight = 1.05f; // sixty degrees
     if (!main || !(glm::length(glm::vec2(main->direction.x, main->direction.z)) > 1e-6f))
         return kDefault;
     return std::atan2(main->direction.x, main->direction.z) + kFromLight;

@@ -24,21 +24,28 @@ float lattice_noise(glm::vec2 place, std::uint64_t octave) {
 
 } // namespace
 
-float ground_variation(glm::vec2 place, float size, float finest, float spread) {
-    float sum = 0, amplitude = 0.5f;
+glm::vec3 ground_variation(glm::vec2 place, float size, float finest, float spread) {
+    constexpr std::uint64_t kOctaves = 14, kTintOctaves = 4, kTintPattern = 100;
+    float brightness = 0, tint = 0, amplitude = 0.36f;
     glm::vec2 at = place / size;
     float wavelength = size;
-    for (std::uint64_t octave = 0; octave < 12; ++octave) {
+    for (std::uint64_t octave = 0; octave < kOctaves; ++octave) {
         if (!(std::abs(at.x) < 1e9f && std::abs(at.y) < 1e9f) || wavelength < finest)
             break; // beyond the lattice's exact integers, or finer than a pixel sees: an octave fades out before it is
                    // dropped
-        sum += amplitude * std::min(1.f, wavelength / finest - 1) * lattice_noise(at, octave);
-        amplitude *= 0.6f;
+        const float fade = std::min(1.f, wavelength / finest - 1);
+        brightness += fade * amplitude * lattice_noise(at, octave);
+        if (octave < kTintOctaves)
+            tint += fade * 0.3f * lattice_noise(at, octave + kTintPattern);
+        amplitude *= 0.9f;
         // Each octave is turned, so that the lattices don't line up.
         at = 2.f * glm::vec2(0.8f * at.x - 0.6f * at.y, 0.6f * at.x + 0.8f * at.y) + 17.f;
         wavelength *= 0.5f;
     }
-    return 1 + spread * std::clamp(sum, -1.f, 1.f);
+    // Two thirds of the range for brightness, one third for the tint.
+    brightness = std::clamp(brightness, -1.f, 1.f) * 2 / 3;
+    tint = std::clamp(tint, -1.f, 1.f) / 3;
+    return 1.f + spread * (brightness + tint * glm::vec3(0.8f, -0.2f, 0.1f));
 }
 
 GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
@@ -60,6 +67,7 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
     }
     const glm::vec3 half = 0.5f * (bounds.high - bounds.low);
     centre_ = {bounds.centre().x, bounds.centre().z};
+    pixel_angle_ = 2 * std::tan(0.5f * camera.vertical_field_of_view) / float(options.height);
     scene_radius_ = std::max({half.x, half.y, half.z});
     haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - *height_));
     if (!(haze_distance_ > 0))
@@ -101,9 +109,10 @@ glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& 
     glm::vec3 radiance(0.f);
     if (clear > 1e-4f) {
         // Soil varies; the variation shrinks to nothing as the albedo nears 1, where it could only lose energy.
-        const float spread = 0.3f * std::clamp(1 - std::max({albedo_->r, albedo_->g, albedo_->b}), 0.f, 1.f);
-        const float footprint = 0.002f * distance / std::max(-direction.y, 1e-3f);
-        const float variation =
+        const float spread = 0.4f * std::clamp(1 - std::max({albedo_->r, albedo_->g, albedo_->b}), 0.f, 1.f);
+        // A pixel's footprint is longer along the view than across: the mean of both.
+        const float footprint = 1.3f * pixel_angle_ * distance / std::sqrt(std::max(-direction.y, 1e-3f));
+        const glm::vec3 variation =
             ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
         radiance = clear * light_at(point, *albedo_ * variation, sample, scratch);
     }

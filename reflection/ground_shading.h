@@ -38,11 +38,11 @@ class GroundShading {
     std::optional<GroundLight> light_;
     glm::vec3 backdrop_irradiance_{0.f}; ///< upwards, open: what lit the ground that the backdrop shows
     glm::vec2 centre_{0.f};
-    float scene_radius_ = 1, haze_distance_ = 1;
+    float scene_radius_ = 1, haze_distance_ = 1, pixel_angle_ = 0.001f;
 };
 
-/// A factor with mean 1 and at most +-spread that varies over the ground as soil does, at all scales from `size` down
-/// to `finest`.
-float ground_variation(glm::vec2 place, float size, float finest, float spread);
+/// Factors on the albedo that vary over the ground as soil and short grass do: brightness at all scales from `size`
+/// down to `finest`, and, more slowly, from reddish to greenish. Every channel has mean 1 and stays within 1 +- spread.
+glm::vec3 ground_variation(glm::vec2 place, float size, float finest, float spread);
 
 } // namespace kokage

@@ -74,10 +74,11 @@ float photographers_azimuth(const Environment& environment);
 Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
                      const Camera& camera, const PictureOptions& options, Progress& progress);
 
-/// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees.
-/// Metered like a camera: the geometric mean of luminance, the middle of the picture counting most, the darkest and
-/// brightest tenth left out, goes to middle grey (0.18); but never so high that the upper tenth of the picture would be
-/// blown out.
+/// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees. 0 for a black
+/// picture. Metered like a camera, the middle of the picture counting most: the geometric mean of luminance goes to
+/// middle grey (0.18) plus half a stop, because crowns are darker than a grey card; but the level that 93 % stay below
+/// becomes 1.2 at most, so that skies keep their colour. What is brighter than that level, or 4.5 stops darker
+/// (background, deep shade), is not in the mean.
 float automatic_exposure_stops(const Image& radiance);
 
 /// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the

@@ -9,7 +9,10 @@ namespace kokage {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-constexpr float kHighlight = 2.5f; ///< where the curve has used nearly all of its white
+constexpr float kCompensation = 1.5f; ///< a crown is darker than a grey card: photographers open half a stop for it
+constexpr float kBrightShare = 0.93f; ///< of the metered picture that must stay below …
+constexpr float kHighlight = 1.2f;    ///< … what the curve shows as a light grey of 0.95
+constexpr double kDeepStops = 4.5;    ///< what is so much darker than that is background or deep shade: not metered
 constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
 void check_channels(const Image& image) {
@@ -26,13 +29,13 @@ float finite(float value) {
 float filmic(float x) {
     constexpr float P = 1, a = 1, m = 0.22f, l = 0.4f, c = 1.33f, b = 0;
     constexpr float l0 = (P - m) * l / a, S0 = m + l0, S1 = m + a * l0, C2 = a * P / (P - S1);
-    const float toe = m * std::pow(x / m, c) + b, straight = m + a * (x - m),
-                shoulder = P - (P - S1) * std::exp(-C2 * (x - S0) / P);
-    const float t = std::clamp(x / m, 0.f, 1.f), toe_share = 1 - t * t * (3 - 2 * t),
-                shoulder_share = x >= S0 ? 1.f : 0.f;
-    const float toe_part = toe_share > 0 ? toe_share * toe : 0.f;
-    return toe_part + (1 - toe_share - shoulder_share) * (shoulder_share > 0 ? 0.f : straight) +
-           shoulder_share * shoulder;
+    if (x >= S0)
+        return P - (P - S1) * std::exp(-C2 * (x - S0) / P);
+    const float straight = m + a * (x - m);
+    if (x >= m)
+        return straight;
+    const float t = x / m, share = t * t * (3 - 2 * t);
+    return (1 - share) * (m * std::pow(t, c) + b) + share * straight;
 }
 
 float srgb(float linear) {
@@ -67,24 +70,22 @@ float automatic_exposure_stops(const Image& radiance) {
     std::sort(lit.begin(), lit.end(), [](const Metered& a, const Metered& b) {
         return a.luminance != b.luminance ? a.luminance < b.luminance : a.weight < b.weight;
     });
-    double passed = 0, sum = 0, counted = 0;
-    float bright = lit.back().luminance;
-    bool bright_found = false;
-    for (const Metered& pixel : lit) {
-        const double share = (passed + 0.5 * double(pixel.weight)) / total;
-        if (share > 0.1 && share < 0.9) {
-            sum += double(pixel.weight) * std::log2(double(pixel.luminance));
-            counted += double(pixel.weight);
-        }
-        if (!bright_found && share >= 0.9) {
-            bright = pixel.luminance;
-            bright_found = true;
-        }
+    double passed = 0;
+    const auto bright_pixel = std::find_if(lit.begin(), lit.end(), [&](const Metered& pixel) {
         passed += double(pixel.weight);
+        return passed >= double(kBrightShare) * total;
+    });
+    const double bright = std::log2(double((bright_pixel == lit.end() ? lit.back() : *bright_pixel).luminance));
+    double sum = 0, counted = 0;
+    for (const Metered& pixel : lit) {
+        const double stops = std::log2(double(pixel.luminance));
+        if (stops < bright - kDeepStops || stops > bright)
+            continue;
+        sum += double(pixel.weight) * stops;
+        counted += double(pixel.weight);
     }
-    const double key = counted > 0 ? sum / counted : std::log2(double(lit[lit.size() / 2].luminance));
-    return float(
-        std::min(std::log2(double(kMiddleGrey)) - key, std::log2(double(kHighlight)) - std::log2(double(bright))));
+    return float(std::min(std::log2(double(kMiddleGrey * kCompensation)) - sum / counted,
+                          std::log2(double(kHighlight)) - bright));
 }
 
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops) {
