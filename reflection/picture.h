@@ -64,8 +64,9 @@ Camera frame_scene(const PatchScene& scene, float aspect, float azimuth = 0.35f)
 /// The same for a box, all of whose corners are shown.
 Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
 
-/// Where a photographer would stand: the strongest light above the horizon comes from the side and a little from behind
-/// the scene, so that leaves glow and shadows give depth. 0.35 if there is no such light or it stands overhead.
+/// Where a photographer would stand: the strongest light above the horizon comes from sixty degrees aside, so that the
+/// crown has a bright and a dark half and its shadow falls across the ground. 0.35 if there is no such light or it
+/// stands overhead.
 float photographers_azimuth(const Environment& environment);
 
 /// Linear radiance picture, 3 channels, finite. The ground is lit per pixel: lights shadow-tested, sky and light from
