@@ -87,24 +87,34 @@ std::vector<CapturePoint> CapturedMaps::points() const {
 namespace {
 
 /// coefficients += radiance of each direction x its weighted harmonics. `radiance(k)` is asked once per direction.
+/// Runs of directions are summed in float and the runs in double, so that a constant is kept to 1e-6.
 template <class Radiance>
 void add_map(std::size_t map, std::size_t directions, const std::vector<float>& weighted_harmonics,
              const Radiance& radiance, MapCoefficients& coefficients) {
+    constexpr std::size_t kRun = 32;
     const std::size_t count = coefficients.count();
-    float* red = coefficients.channel(map, 0);
-    float* green = coefficients.channel(map, 1);
-    float* blue = coefficients.channel(map, 2);
-    for (std::size_t k = 0; k < directions; ++k) {
-        const glm::vec3 value = radiance(k);
-        if (value == glm::vec3(0.f))
-            continue;
-        const float* harmonics = weighted_harmonics.data() + k * count;
-        for (std::size_t j = 0; j < count; ++j) {
-            red[j] += value.r * harmonics[j];
-            green[j] += value.g * harmonics[j];
-            blue[j] += value.b * harmonics[j];
+    std::vector<float> run(3 * count);
+    std::vector<double> total(3 * count, 0.0);
+    float *red = run.data(), *green = red + count, *blue = green + count;
+    for (std::size_t first = 0; first < directions; first += kRun) {
+        std::fill(run.begin(), run.end(), 0.f);
+        for (std::size_t k = first; k < std::min(first + kRun, directions); ++k) {
+            const glm::vec3 value = radiance(k);
+            if (value == glm::vec3(0.f))
+                continue;
+            const float* harmonics = weighted_harmonics.data() + k * count;
+            for (std::size_t j = 0; j < count; ++j) {
+                red[j] += value.r * harmonics[j];
+                green[j] += value.g * harmonics[j];
+                blue[j] += value.b * harmonics[j];
+            }
         }
+        for (std::size_t j = 0; j < total.size(); ++j)
+            total[j] += double(run[j]);
     }
+    float* sums = coefficients.channel(map, 0); // red, green and blue follow each other
+    for (std::size_t j = 0; j < total.size(); ++j)
+        sums[j] += float(total[j]);
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 #include "foliage/patch_sampling.h"
+#include "foliage/patch_geometry.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,12 +9,6 @@ namespace kokage {
 namespace {
 
 constexpr int kTries = 32;
-
-glm::dvec3 twice_area_vector(const PatchScene& scene, std::uint32_t triangle) {
-    const glm::uvec3 corner = scene.triangles[triangle];
-    const glm::dvec3 a = scene.positions[corner.x], b = scene.positions[corner.y], c = scene.positions[corner.z];
-    return glm::cross(b - a, c - a);
-}
 
 std::uint32_t pick_triangle(const PatchScene& scene, const Patch& patch, double u) {
     if (patch.triangle_count == 1)
