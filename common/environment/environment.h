@@ -42,6 +42,9 @@ struct LightSample {
 /// texel.
 LightSample sample_light(const DistantLight& light, float u0, float u1);
 
+/// A direction drawn uniformly in solid angle from the cone within `half_angle` of a unit axis.
+glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u1);
+
 struct Environment {
     Image remainder; ///< lat-long RGB radiance with the lights taken out; at least 1x1
     std::vector<DistantLight> distant_lights;

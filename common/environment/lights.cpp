@@ -4,10 +4,8 @@
 #include <cmath>
 
 namespace kokage {
-namespace {
 
-/// Uniform in solid angle on the cone around `axis`. Works with 1 - cos, so that a sun of 0.27 degrees does not drown
-/// in rounding.
+// Works with 1 - cos, so that a sun of 0.27 degrees does not drown in rounding.
 glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u1) {
     if (half_angle <= 0)
         return axis;
@@ -21,11 +19,14 @@ glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u
     return glm::normalize((1 - height) * axis + radius * (std::cos(phi) * tangent + std::sin(phi) * bitangent));
 }
 
-} // namespace
-
 LightSample sample_light(const DistantLight& light, float u0, float u1) {
-    if (light.texels.empty())
-        return {sample_cone(light.direction, light.half_angle, u0, u1), light.irradiance};
+    if (light.texels.empty()) {
+        // Radiance L within half angle a gives a facing surface L pi sin^2(a) (beyond a right angle L pi); L over the
+        // density is L 2 pi (1 - cos(a)). Their ratio is 1/cos^2(a/2) (beyond: 2 (1 - cos(a))).
+        const float half_cosine = std::cos(0.5f * light.half_angle), squared = half_cosine * half_cosine;
+        const float ratio = light.half_angle <= kPi / 2 ? 1 / squared : 4 * (1 - squared);
+        return {sample_cone(light.direction, light.half_angle, u0, u1), light.irradiance * ratio};
+    }
     double total = 0;
     for (const DistantLight::Texel& texel : light.texels)
         total += luminance(texel.irradiance);

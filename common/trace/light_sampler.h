@@ -26,10 +26,14 @@ class LightSampler {
                                    const glm::vec3& back, float choice, glm::vec2 numbers) const;
 
   private:
+    struct Distant;
+    static LightSample sample_distant(const Distant& light, glm::vec2 numbers);
+
     struct Distant {
         glm::vec3 direction, irradiance;
-        float cos_half, sin_half;
+        float cos_half, sin_half; ///< of the cone that holds it
         const DistantLight* light;
+        std::vector<double> texel_shares; ///< cumulative; empty for a disc
     };
     struct Point {
         glm::vec3 position;

@@ -130,6 +130,40 @@ TEST(LightSampler, ManyLightsAddUpToTheirSum) {
         EXPECT_NEAR(mean[std::size_t(c)], expected[std::size_t(c)], 0.01 * expected[std::size_t(c)]);
 }
 
+TEST(LightSampler, RegionsDrawTheirTexelsAsSampleLightDoes) {
+    Environment environment = test::constant_environment(glm::vec3(0));
+    DistantLight region;
+    region.direction = {0, 1, 0};
+    region.half_angle = 0.5f;
+    Random random(6);
+    glm::dvec3 expected(0);
+    for (int i = 0; i < 3000; ++i) {
+        const glm::vec3 direction = glm::normalize(glm::vec3(0, 2, 0) + 0.9f * test::random_direction(random));
+        const glm::vec3 irradiance(random.uniform(), i % 2 ? 0.f : 1.f, 0.1f);
+        region.texels.push_back({direction, irradiance, 0.002f});
+        region.irradiance += irradiance;
+        expected += glm::dvec3(irradiance) * double(direction.y);
+    }
+    region.texels.push_back({{0, -1, 0}, glm::vec3(0), 0.002f}); // black: never drawn
+    environment.distant_lights.push_back(region);
+    const LightSampler sampler(environment);
+    glm::dvec3 chosen(0), plain(0);
+    const int draws = 20000;
+    for (int i = 0; i < draws; ++i) {
+        const glm::vec2 numbers(random.uniform(), random.uniform());
+        const auto ray = sampler.sample({0, 0, 0}, {0, 1, 0}, glm::vec3(1), glm::vec3(1), 0.5f, numbers);
+        ASSERT_TRUE(ray);
+        ASSERT_GT(ray->direction.y, 0);
+        chosen += glm::dvec3(ray->irradiance * ray->direction.y) / double(draws);
+        const LightSample sample = sample_light(region, numbers.x, numbers.y);
+        plain += glm::dvec3(sample.irradiance_over_pdf * sample.direction.y) / double(draws);
+    }
+    for (int c = 0; c < 3; ++c) {
+        EXPECT_NEAR(chosen[std::size_t(c)], expected[std::size_t(c)], 0.03 * expected[std::size_t(c)]);
+        EXPECT_NEAR(chosen[std::size_t(c)], plain[std::size_t(c)], 0.002 * expected[std::size_t(c)]);
+    }
+}
+
 TEST(LightSampler, LightsThatReachNothingCostNoRay) {
     Environment environment = test::constant_environment(glm::vec3(0));
     environment.distant_lights.resize(2);
