@@ -78,7 +78,7 @@ void make_leaves(const GrownSkeleton& grown, const GrowthParameters& p, const gl
                                                          x * std::cos(fold) * blade.across +
                                                          std::abs(x) * std::sin(fold) * blade.normal;
                     part.normals[leaf * corners + k] =
-                        std::cos(fold) * blade.normal - side * std::sin(fold) * blade.across;
+                        side == 0 ? blade.normal : std::cos(fold) * blade.normal - side * std::sin(fold) * blade.across;
                     part.uvs[leaf * corners + k] = {q.x + 0.5f, 1 - q.y};
                 }
                 glm::dvec3 centre(0.0);

@@ -18,7 +18,7 @@ struct GrowthParameters {
     std::uint64_t seed = 1;
     int leaves = 30000;
 
-    double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.0;
+    double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.4;
     LeafForm leaf_form = LeafForm::outline;
     int leaf_detail = 1;
     double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0021, shoot_angle = 48;
