@@ -1,0 +1,301 @@
+#include "foliage/bundles/bundle_tracing.h"
+
+#include "common/services/parallel.h"
+#include "common/services/random.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage::bundles {
+namespace {
+
+RasterScratch& scratch_of_thread() {
+    thread_local RasterScratch scratch;
+    return scratch;
+}
+
+/// Pixels a unit length so that a leaf covers `pixels` on average (its mean projected area is half its area).
+float pixel_density(const Facets& facets, float pixels) {
+    const double extent = glm::length(facets.high - facets.low);
+    const double wanted = std::sqrt(pixels / std::max(0.5 * facets.mean_leaf_area, 1e-30));
+    return float(std::clamp(wanted, 1.0, std::max(8192.0 / std::max(extent, 1e-6), 1.0)));
+}
+
+glm::vec2 grid_jitter(std::uint64_t seed, std::size_t direction) {
+    Random random(seed, direction);
+    const float u = random.uniform();
+    return {u, random.uniform()};
+}
+
+std::uint8_t fraction(std::uint32_t open, std::uint32_t of) {
+    return of == 0 ? OpenFractions::kUnseen : std::uint8_t((open * 508ull + of) / (2ull * of));
+}
+
+/// Turns a raster's counts into one row of open fractions.
+void store_open(const Facets& facets, const RasterScratch& raster, std::size_t row, OpenFractions& open, bool both) {
+    const std::uint32_t leaves = facets.leaf_facet_count;
+    std::uint8_t* near_row = open.near_end.data() + row * open.facet_count;
+    std::uint8_t* far_row = both ? open.far_end.data() + row * open.facet_count : nullptr;
+    for (std::uint32_t f = 0; f < leaves; ++f) {
+        near_row[f] = fraction(raster.near_count[f], raster.fragments[f]);
+        if (both)
+            far_row[f] = fraction(raster.far_count[f], raster.fragments[f]);
+    }
+    for (std::uint32_t f = leaves; f < open.facet_count; ++f) {
+        const std::uint32_t face =
+            leaves + 2 * (f - leaves); // the front looks to the near end; face + 1: to the far end
+        const std::uint32_t of = raster.fragments[face] + raster.fragments[face + 1];
+        near_row[f] = fraction(raster.near_count[face], of);
+        if (both)
+            far_row[f] = fraction(raster.far_count[face + 1], of);
+    }
+}
+
+/// Which side of a patch looks to the near and to the far end of lines of one direction, for every face.
+struct FaceSides {
+    std::vector<Side> near_side, far_side;
+};
+
+void face_sides(const Facets& facets, const glm::vec3& direction, FaceSides& sides) {
+    sides.near_side.resize(facets.face_count());
+    sides.far_side.resize(facets.face_count());
+    for (std::uint32_t f = 0; f < facets.leaf_facet_count; ++f) {
+        const Side front = 2 * facets.facets[f].patch;
+        const bool front_is_near = glm::dot(facets.facets[f].normal, direction) < 0;
+        sides.near_side[f] = front + !front_is_near;
+        sides.far_side[f] = front + front_is_near;
+    }
+    for (std::uint32_t f = facets.leaf_facet_count, face = f; f < facets.facets.size(); ++f, face += 2) {
+        sides.near_side[face] = sides.far_side[face + 1] = 2 * facets.facets[f].patch;
+        sides.far_side[face] = sides.near_side[face + 1] = kNoSide; // inside the wood
+    }
+}
+
+struct Pair {
+    Side near_side, far_side; ///< the two sides that face each other
+};
+
+struct DirectionLinks {
+    std::vector<Pair> pairs;
+    std::vector<Links::GroundLink> ground;
+};
+
+/// Where pixel (0, 0)'s line meets the ground, and how that moves from pixel to pixel.
+struct GroundProjection {
+    glm::vec2 origin, along_u, along_v;
+    bool valid = false;
+};
+
+GroundProjection project_to_ground(const GroundGrid& grid, const Projection& projection) {
+    const glm::vec3& d = projection.direction;
+    if (d.y > -1e-3f) // lines this flat leave the grid
+        return {};
+    auto point = [&](float u, float v) {
+        const glm::vec3 on_plane =
+            ((u - projection.offset.x) * projection.u_axis + (v - projection.offset.y) * projection.v_axis) /
+            projection.pixels_per_unit;
+        const glm::vec3 hit = on_plane + d * ((grid.height - on_plane.y) / d.y);
+        return glm::vec2(hit.x, hit.z);
+    };
+    const glm::vec2 origin = point(0, 0);
+    return {origin, point(1, 0) - origin, point(0, 1) - origin, true};
+}
+
+void collect_links(const RasterScratch& raster, const Projection& projection, const FaceSides& sides,
+                   std::uint32_t face_mask, const std::optional<GroundGrid>& grid, std::uint32_t phase,
+                   DirectionLinks& out) {
+    const GroundProjection on_ground = grid ? project_to_ground(*grid, projection) : GroundProjection{};
+    for (int y = 0; y < projection.height; ++y)
+        for (int x = 0; x < projection.width; ++x) {
+            const std::size_t pixel = std::size_t(y) * projection.width + x;
+            const std::uint32_t begin = raster.pixel_begin[pixel], end = raster.pixel_begin[pixel + 1];
+            if (begin == end)
+                continue;
+            Side open = sides.far_side[raster.sorted_keys[begin] & face_mask];
+            for (std::uint32_t i = begin + 1; i < end; ++i) {
+                const std::uint32_t face = raster.sorted_keys[i] & face_mask;
+                const Side near_side = sides.near_side[face];
+                if (open != kNoSide && near_side != kNoSide)
+                    out.pairs.push_back({open, near_side});
+                open = sides.far_side[face];
+            }
+            constexpr std::uint32_t stride = GroundGrid::kStride;
+            if (on_ground.valid && open != kNoSide && (std::uint32_t(x) + phase) % stride == 0 &&
+                (std::uint32_t(y) + phase / stride) % stride == 0) {
+                const glm::vec2 hit = on_ground.origin + float(x) * on_ground.along_u + float(y) * on_ground.along_v;
+                if (const int texel = grid->texel_at(hit.x, hit.y); texel >= 0)
+                    out.ground.push_back({open, std::uint32_t(texel)});
+            }
+        }
+}
+
+/// Compressed rows from pairs. The halves fill disjoint parts of each row, each in the order of its directions.
+void compress(const PatchScene& scene, const std::vector<DirectionLinks>& directions, std::uint32_t half,
+              Links& links) {
+    const std::size_t side_count = 2 * scene.patches.size();
+    std::vector<std::uint32_t> cursor[2];
+    const std::size_t bounds[3] = {0, half, directions.size()};
+    parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
+        cursor[h].assign(side_count, 0);
+        for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
+            for (const Pair& pair : directions[d].pairs) {
+                ++cursor[h][pair.near_side];
+                ++cursor[h][pair.far_side];
+            }
+    });
+    links.begin.resize(side_count + 1);
+    links.middle.resize(side_count);
+    std::uint32_t running = 0;
+    std::vector<Side> lonely;
+    for (std::size_t s = 0; s < side_count; ++s) {
+        std::uint32_t first = cursor[0][s];
+        const std::uint32_t second = cursor[1][s];
+        if (first + second == 0) {
+            first = 1;
+            lonely.push_back(Side(s));
+        }
+        links.begin[s] = cursor[0][s] = running;
+        links.middle[s] = cursor[1][s] = running + first;
+        running += first + second;
+    }
+    links.begin[side_count] = running;
+    links.neighbours.resize(running);
+    // A side that meets nobody takes what its open share leaves from its patch's front if it is the inside of bark,
+    // else (hidden in wood, or all its lines end outside) from the patch before it, its neighbour on the branch. Rows
+    // stay stochastic.
+    for (Side side : lonely) {
+        const bool inside = side % 2 == 1 && scene.patches[side / 2].kind == PatchKind::bark;
+        links.neighbours[links.begin[side]] = inside      ? side - 1
+                                              : side >= 2 ? side - 2
+                                                          : std::min<Side>(side + 2, Side(side_count) - 2 + side % 2);
+    }
+    parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
+        for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
+            for (const Pair& pair : directions[d].pairs) {
+                links.neighbours[cursor[h][pair.near_side]++] = pair.far_side;
+                links.neighbours[cursor[h][pair.far_side]++] = pair.near_side;
+            }
+    });
+}
+
+OpenFractions make_open(std::size_t directions, const Facets& facets, bool both) {
+    OpenFractions open;
+    open.facet_count = facets.facets.size();
+    open.near_end.resize(directions * open.facet_count);
+    if (both)
+        open.far_end.resize(directions * open.facet_count);
+    return open;
+}
+
+} // namespace
+
+GroundGrid make_ground_grid(const Facets& facets, float height_m) {
+    GroundGrid grid;
+    grid.height = float((double(height_m) - facets.centre.y) * facets.scale);
+    const glm::vec3 size = facets.high - facets.low, middle = 0.5f * (facets.low + facets.high);
+    // Shadows of a sun 20 degrees above the horizon stay inside.
+    const float half = 0.75f * std::max(size.x, size.z) + 2 * std::max(size.y, facets.high.y - grid.height);
+    grid.low = glm::vec2(middle.x, middle.z) - half;
+    grid.texel = std::max(2 * half / GroundGrid::kSize, 1e-6f);
+    return grid;
+}
+
+BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, const BundleSettings& settings,
+                              Progress& progress) {
+    BundleTransport transport;
+    transport.sky_lines = make_line_directions(settings.sky_directions, hash64(settings.seed) + 1);
+    transport.link_lines = make_line_directions(settings.link_directions, hash64(settings.seed) + 2);
+    if (scene.ground)
+        transport.ground = make_ground_grid(facets, scene.ground->height_m);
+    const std::size_t skies = transport.sky_lines.directions.size(), linked = transport.link_lines.directions.size();
+    transport.sky_open = make_open(skies, facets, true);
+    transport.link_open = make_open(linked, facets, true);
+    const float sky_density = pixel_density(facets, settings.sky_pixels),
+                link_density = pixel_density(facets, settings.link_pixels);
+    const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
+
+    std::vector<DirectionLinks> collected(linked);
+    std::vector<std::size_t> fragments(skies + linked, 0);
+    transport.links.ground_pixel_area.resize(linked);
+    progress.begin("drawing line bundles", skies + linked);
+    parallel_blocks(skies + linked, 1, [&](std::size_t task, std::size_t) {
+        progress.throw_if_stopped();
+        RasterScratch& raster = scratch_of_thread();
+        const glm::vec2 jitter = grid_jitter(settings.seed, task);
+        if (task < linked) {
+            const glm::vec3& direction = transport.link_lines.directions[task];
+            const Projection projection = fit_projection(facets, direction, link_density, jitter);
+            draw_fragments(scene, facets, projection, raster);
+            store_open(facets, raster, task, transport.link_open, true);
+            thread_local FaceSides sides;
+            face_sides(facets, direction, sides);
+            const auto phase = std::uint32_t(hash64(settings.seed * 977 + task));
+            collect_links(raster, projection, sides, face_mask, transport.ground, phase, collected[task]);
+            transport.links.ground_pixel_area[task] =
+                float(GroundGrid::kStride * GroundGrid::kStride) / (link_density * link_density);
+        } else {
+            const glm::vec3& direction = transport.sky_lines.directions[task - linked];
+            draw_ends(scene, facets, fit_projection(facets, direction, sky_density, jitter), true, raster);
+            store_open(facets, raster, task - linked, transport.sky_open, true);
+        }
+        for (std::uint32_t count : raster.fragments)
+            fragments[task] += count;
+        progress.advance(1);
+    });
+    for (std::size_t count : fragments)
+        transport.fragments += count;
+
+    transport.links.ground_begin.push_back(0);
+    for (const DirectionLinks& direction : collected) {
+        transport.links.ground.insert(transport.links.ground.end(), direction.ground.begin(), direction.ground.end());
+        transport.links.ground_begin.push_back(std::uint32_t(transport.links.ground.size()));
+    }
+    compress(scene, collected, transport.link_lines.half, transport.links);
+    return transport;
+}
+
+BeamVisibility trace_beams(const PatchScene& scene, const Facets& facets, const std::optional<GroundGrid>& ground,
+                           const std::vector<glm::vec3>& directions_to_light, float pixels, std::uint64_t seed) {
+    BeamVisibility visibility;
+    visibility.open = make_open(directions_to_light.size(), facets, false);
+    visibility.ground_shadow.resize(ground ? directions_to_light.size() : 0);
+    const float density = pixel_density(facets, pixels);
+    parallel_blocks(directions_to_light.size(), 1, [&](std::size_t beam, std::size_t) {
+        RasterScratch& raster = scratch_of_thread();
+        const Projection projection =
+            fit_projection(facets, -directions_to_light[beam], density, grid_jitter(seed, beam));
+        draw_ends(scene, facets, projection, false, raster);
+        store_open(facets, raster, beam, visibility.open, false);
+        if (!ground)
+            return;
+        std::vector<float>& shadow = visibility.ground_shadow[beam];
+        shadow.assign(GroundGrid::kSize * GroundGrid::kSize, 0.f);
+        const GroundProjection on_ground = project_to_ground(*ground, projection);
+        if (!on_ground.valid)
+            return;
+        constexpr int stride = 4;
+        const float pixel_area = float(stride * stride) / (density * density);
+        const float share = pixel_area / (std::abs(projection.direction.y) * ground->texel * ground->texel);
+        for (int y = 0; y < projection.height; y += stride)
+            for (int x = 0; x < projection.width; x += stride) {
+                if (raster.near_keys[std::size_t(y) * projection.width + x] == kNoKey)
+                    continue;
+                const glm::vec2 hit = on_ground.origin + float(x) * on_ground.along_u + float(y) * on_ground.along_v;
+                if (const int texel = ground->texel_at(hit.x, hit.y); texel >= 0)
+                    shadow[texel] += share;
+            }
+        for (float& s : shadow)
+            s = std::min(s, 1.f);
+    });
+    return visibility;
+}
+
+std::size_t BundleTransport::bytes() const {
+    auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
+    return size(sky_open.near_end) + size(sky_open.far_end) + size(link_open.near_end) + size(link_open.far_end) +
+           size(links.begin) + size(links.middle) + size(links.neighbours) + size(links.ground) +
+           size(links.ground_begin) + size(links.ground_pixel_area) + size(sky_lines.directions) +
+           size(link_lines.directions);
+}
+
+} // namespace kokage::bundles

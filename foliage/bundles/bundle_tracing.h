@@ -1,0 +1,85 @@
+#pragma once
+// Who sees whom: line bundles drawn once, kept as open fractions (ends of lines) and links (neighbours on lines).
+#include "common/services/progress.h"
+#include "foliage/bundles/facets.h"
+#include "foliage/bundles/line_directions.h"
+#include "foliage/bundles/line_raster.h"
+
+#include <optional>
+
+namespace kokage::bundles {
+
+/// Of each direction and facet, which share of its lines reaches the near / far end of the line: 0 ... 254 = 0 ... 1.
+/// kUnseen: no line of this direction met the facet.
+struct OpenFractions {
+    static constexpr std::uint8_t kUnseen = 255;
+    std::size_t facet_count = 0;
+    std::vector<std::uint8_t> near_end, far_end; ///< [direction][facet]; far_end is empty for lights
+    const std::uint8_t* near_row(std::size_t direction) const { return near_end.data() + direction * facet_count; }
+    const std::uint8_t* far_row(std::size_t direction) const { return far_end.data() + direction * facet_count; }
+};
+
+/// A square of ground texels around the tree, lit and shaded by it; beyond it the ground is taken to lie open.
+struct GroundGrid {
+    static constexpr int kSize = 32;
+    static constexpr int kStride = 2; ///< every 2nd pixel in u and v is followed to the ground
+    float height = 0;                 ///< scaled y
+    glm::vec2 low{0.f};               ///< scaled x, z of the corner
+    float texel = 1;                  ///< scaled side of a texel
+    int texel_at(float x, float z) const {
+        const float i = (x - low.x) / texel, j = (z - low.y) / texel;
+        return i >= 0 && j >= 0 && i < kSize && j < kSize ? int(j) * kSize + int(i) : -1;
+    }
+};
+GroundGrid make_ground_grid(const Facets& facets, float height_m);
+
+/// Sides are numbered 2 x patch (front) and 2 x patch + 1 (back).
+using Side = std::uint32_t;
+inline constexpr Side kNoSide = 0xffffffffu;
+
+/// The neighbours of every side on all lines, one entry a line, in compressed rows; and its ends on the ground.
+/// Row of side s: entries [begin[s], begin[s+1]), of the first half of the directions before middle[s], of the second
+/// after.
+struct Links {
+    std::vector<std::uint32_t> begin, middle;
+    std::vector<Side> neighbours;
+    /// Lines that end on a texel of the ground, one in kStride^2, direction by direction.
+    struct GroundLink {
+        Side side;
+        std::uint32_t texel;
+    };
+    std::vector<GroundLink> ground;
+    std::vector<std::uint32_t> ground_begin; ///< of each direction, + 1
+    std::vector<float>
+        ground_pixel_area; ///< of each direction: scaled area that one ground link stands for, across the line
+};
+
+struct BundleSettings {
+    int sky_directions = 64;  ///< lines that only show their ends
+    int link_directions = 16; ///< lines that show all their neighbours
+    float sky_pixels = 4;     ///< mean pixels a leaf
+    float link_pixels = 4;
+    std::uint64_t seed = 1;
+};
+
+/// Draws the bundles. The result does not depend on the number of threads.
+struct BundleTransport {
+    LineDirections sky_lines, link_lines;
+    OpenFractions sky_open, link_open;
+    std::optional<GroundGrid> ground;
+    Links links;
+    std::size_t fragments = 0;
+    std::size_t bytes() const;
+};
+BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, const BundleSettings& settings,
+                              Progress& progress);
+
+/// Visibility towards directions of lights: near_end of a raster along each -direction_to_light; shadows on the ground.
+struct BeamVisibility {
+    OpenFractions open;                            ///< near_end only
+    std::vector<std::vector<float>> ground_shadow; ///< [beam][texel]: shaded share, 0 ... 1; empty without ground
+};
+BeamVisibility trace_beams(const PatchScene& scene, const Facets& facets, const std::optional<GroundGrid>& ground,
+                           const std::vector<glm::vec3>& directions_to_light, float pixels, std::uint64_t seed);
+
+} // namespace kokage::bundles

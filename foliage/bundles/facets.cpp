@@ -1,0 +1,266 @@
+#include "foliage/bundles/facets.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace kokage::bundles {
+namespace {
+
+// Two triangles are taken to lie in one plane when their normals differ by less than about a degree.
+constexpr float kSamePlaneCosine = 0.9998f;
+
+struct Outline {
+    std::array<glm::vec3, Facets::kMaxCorners> corners;
+    int count = 0;
+    std::int16_t mask = -1;
+    glm::vec3 normal{0.f};
+    float area = 0;
+    TextureMap texture{};
+};
+
+struct Corner {
+    glm::vec3 position;
+    glm::vec2 uv;
+};
+
+TextureMap texture_map(const Corner (&corner)[3], const glm::vec3& normal) {
+    const glm::vec3 e1 = corner[1].position - corner[0].position, e2 = corner[2].position - corner[0].position;
+    const float twice_area = glm::dot(glm::cross(e1, e2), normal);
+    // Gradients of the barycentric coordinates of corners 1 and 2 in the plane.
+    const glm::vec3 g1 = glm::cross(e2, normal) / twice_area, g2 = glm::cross(normal, e1) / twice_area;
+    const glm::vec2 d1 = corner[1].uv - corner[0].uv, d2 = corner[2].uv - corner[0].uv;
+    return {corner[0].position, corner[0].uv, g1 * d1.x + g2 * d2.x, g1 * d1.y + g2 * d2.y};
+}
+
+glm::vec2 mapped_uv(const TextureMap& map, const glm::vec3& position) {
+    const glm::vec3 offset = position - map.point;
+    return map.uv + glm::vec2(glm::dot(map.u_gradient, offset), glm::dot(map.v_gradient, offset));
+}
+
+bool convex_at(const Outline& outline, int i) {
+    const int n = outline.count;
+    const glm::vec3 a = outline.corners[(i + n - 1) % n], b = outline.corners[i], c = outline.corners[(i + 1) % n];
+    const glm::vec3 ab = b - a, bc = c - b;
+    return glm::dot(glm::cross(ab, bc), outline.normal) >= -1e-4f * glm::length(ab) * glm::length(bc);
+}
+
+/// Adds a triangle to an outline across a shared edge if the union stays flat, convex and equally textured.
+bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask, const glm::vec3& normal, float area) {
+    if (outline.count >= Facets::kMaxCorners || mask != outline.mask ||
+        glm::dot(normal, outline.normal) < kSamePlaneCosine)
+        return false;
+    for (int e = 0; e < 3; ++e) {
+        const glm::vec3 &a = triangle[e].position, &b = triangle[(e + 1) % 3].position;
+        for (int i = 0; i < outline.count; ++i) {
+            // The triangle's edge a->b runs against the outline's edge.
+            if (outline.corners[i] != b || outline.corners[(i + 1) % outline.count] != a)
+                continue;
+            const Corner& apex = triangle[(e + 2) % 3];
+            if (mask >= 0 && glm::length(mapped_uv(outline.texture, apex.position) - apex.uv) > 1e-3f)
+                return false;
+            Outline larger = outline;
+            std::copy_backward(larger.corners.begin() + i + 1, larger.corners.begin() + larger.count,
+                               larger.corners.begin() + larger.count + 1);
+            larger.corners[i + 1] = apex.position;
+            ++larger.count;
+            for (int j = i; j <= i + 2; ++j)
+                if (!convex_at(larger, j % larger.count))
+                    return false;
+            larger.area += area;
+            outline = larger;
+            return true;
+        }
+    }
+    return false;
+}
+
+class Builder {
+  public:
+    Builder(const PatchScene& scene, Facets& facets) : scene_(scene), facets_(facets) {}
+
+    void add_patch(std::uint32_t index) {
+        facets_.patch_first_facet.push_back(std::uint32_t(facets_.facets.size()));
+        first_facet_ = facets_.facets.size();
+        const Patch& patch = scene_.patches[index];
+        Outline outline;
+        for (std::uint32_t t = 0; t < patch.triangle_count; ++t) {
+            const std::uint32_t triangle = patch.first_triangle + t;
+            Corner corner[3];
+            for (int k = 0; k < 3; ++k) {
+                const std::uint32_t vertex = scene_.triangles[triangle][k];
+                corner[k].position = scaled(scene_.positions[vertex]);
+                corner[k].uv = scene_.uvs.empty() ? glm::vec2(0.f) : scene_.uvs[vertex];
+            }
+            const glm::vec3 cross =
+                glm::cross(corner[1].position - corner[0].position, corner[2].position - corner[0].position);
+            const float length = glm::length(cross);
+            if (!(length > 1e-18f) || !std::isfinite(length))
+                continue;
+            const glm::vec3 normal = cross / length;
+            const auto mask = scene_.masked(triangle) ? scene_.triangle_mask[triangle] : std::int16_t(-1);
+            if (outline.count > 0 && try_merge(outline, corner, mask, normal, 0.5f * length))
+                continue;
+            flush(outline, index);
+            outline.count = 3;
+            for (int k = 0; k < 3; ++k)
+                outline.corners[k] = corner[k].position;
+            outline.mask = mask;
+            outline.normal = normal;
+            outline.area = 0.5f * length;
+            if (mask >= 0)
+                outline.texture = texture_map(corner, normal);
+        }
+        flush(outline, index);
+    }
+
+    void make_groups() {
+        for (int corners = 3; corners <= Facets::kMaxCorners; ++corners)
+            if (!outlines_[std::size_t(corners)].empty())
+                facets_.groups.push_back(make_group(corners));
+    }
+
+  private:
+    glm::vec3 scaled(const glm::vec3& position) const {
+        return glm::vec3((glm::dvec3(position) - facets_.centre) * facets_.scale);
+    }
+
+    void flush(Outline& outline, std::uint32_t patch) {
+        if (outline.count == 0)
+            return;
+        const bool bark = scene_.patches[patch].kind == PatchKind::bark;
+        const std::uint32_t facet = facet_for(outline, patch, bark);
+        add_area(facets_.facets[facet], outline);
+        const std::uint32_t face = bark ? facets_.leaf_facet_count + 2 * (facet - facets_.leaf_facet_count) : facet;
+        outlines_[std::size_t(outline.count)].push_back({outline, face, bark});
+        outline.count = 0;
+    }
+
+    static void add_area(Facet& facet, const Outline& outline) {
+        const glm::vec3 n = outline.normal;
+        const float moments[6] = {n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z};
+        for (int i = 0; i < 6; ++i)
+            facet.form[i] += outline.area * moments[i];
+        facet.area += outline.area;
+    }
+
+    std::uint32_t facet_for(const Outline& outline, std::uint32_t patch, bool bark) {
+        for (std::size_t f = first_facet_; f < facets_.facets.size(); ++f)
+            if (bark || glm::dot(facets_.facets[f].normal, outline.normal) >= kSamePlaneCosine)
+                return std::uint32_t(f);
+        Facet facet;
+        facet.normal = bark ? glm::vec3(0.f) : outline.normal;
+        facet.patch = patch;
+        facet.bark = bark;
+        facets_.facets.push_back(facet);
+        if (!bark)
+            facets_.leaf_facet_count = std::uint32_t(facets_.facets.size());
+        return std::uint32_t(facets_.facets.size() - 1);
+    }
+
+    const PatchScene& scene_;
+    Facets& facets_;
+    std::size_t first_facet_ = 0;
+    struct Drawn {
+        Outline outline;
+        std::uint32_t face;
+        bool bark;
+    };
+    std::array<std::vector<Drawn>, Facets::kMaxCorners + 1> outlines_;
+
+    PolygonGroup make_group(int corners) const {
+        const std::vector<Drawn>& drawn = outlines_[std::size_t(corners)];
+        PolygonGroup group;
+        group.corners = corners;
+        group.count = drawn.size();
+        group.stride = group.count + PolygonGroup::kPadding;
+        for (auto* axis : {&group.x, &group.y, &group.z})
+            axis->assign(group.stride * std::size_t(corners), 0.f);
+        for (auto* axis : {&group.normal_x, &group.normal_y, &group.normal_z})
+            axis->assign(group.stride, 0.f);
+        group.face.resize(group.stride);
+        group.bark.resize(group.stride);
+        group.mask.resize(group.stride, -1);
+        if (!scene_.masks.empty())
+            group.texture.resize(group.count);
+        for (std::size_t i = 0; i < group.count; ++i) {
+            const Outline& outline = drawn[i].outline;
+            for (std::size_t k = 0; k < std::size_t(corners); ++k) {
+                group.x[k * group.stride + i] = outline.corners[k].x;
+                group.y[k * group.stride + i] = outline.corners[k].y;
+                group.z[k * group.stride + i] = outline.corners[k].z;
+            }
+            group.normal_x[i] = outline.normal.x;
+            group.normal_y[i] = outline.normal.y;
+            group.normal_z[i] = outline.normal.z;
+            group.face[i] = drawn[i].face;
+            group.bark[i] = drawn[i].bark;
+            group.mask[i] = outline.mask;
+            if (!group.texture.empty())
+                group.texture[i] = outline.texture;
+        }
+        return group;
+    }
+};
+
+void measure(const PatchScene& scene, Facets& facets) {
+    facets.patch_area.assign(facets.patch_count, 0.f);
+    for (Facet& facet : facets.facets) {
+        facets.patch_area[facet.patch] += facet.area;
+        // sqrt(mean (n.d)^2) exceeds mean |n.d|: by nothing for a plane, by pi / (2 sqrt 2) for a tube.
+        const float excess = facet.bark ? 8 / (kPi * kPi) : 1.f;
+        for (float& moment : facet.form)
+            moment *= excess / facet.area;
+    }
+    double leaf_area = 0, any_area = 0;
+    std::size_t leaves = 0, any = 0;
+    for (std::uint32_t p = 0; p < facets.patch_count; ++p) {
+        if (!(facets.patch_area[p] > 0))
+            continue;
+        any_area += facets.patch_area[p];
+        ++any;
+        if (scene.patches[p].kind == PatchKind::leaf) {
+            leaf_area += facets.patch_area[p];
+            ++leaves;
+        }
+    }
+    facets.mean_leaf_area = leaves ? float(leaf_area / double(leaves)) : any ? float(any_area / double(any)) : 0.f;
+    bool first = true;
+    for (const PolygonGroup& group : facets.groups)
+        for (int k = 0; k < group.corners; ++k)
+            for (std::size_t i = 0; i < group.count; ++i) {
+                const std::size_t c = std::size_t(k) * group.stride + i;
+                const glm::vec3 corner(group.x[c], group.y[c], group.z[c]);
+                facets.low = first ? corner : glm::min(facets.low, corner);
+                facets.high = first ? corner : glm::max(facets.high, corner);
+                first = false;
+            }
+}
+
+} // namespace
+
+Facets make_facets(const PatchScene& scene) {
+    Facets facets;
+    facets.patch_count = std::uint32_t(scene.patches.size());
+    glm::dvec3 low(0.0), high(0.0);
+    for (std::size_t i = 0; i < scene.positions.size(); ++i) {
+        const glm::dvec3 position(scene.positions[i]);
+        low = i ? glm::min(low, position) : position;
+        high = i ? glm::max(high, position) : position;
+    }
+    facets.centre = 0.5 * (low + high);
+    const double diagonal = glm::length(high - low);
+    facets.scale = diagonal > 0 ? 1 / diagonal : 1;
+
+    facets.patch_first_facet.reserve(scene.patches.size() + 1);
+    facets.facets.reserve(scene.patches.size());
+    Builder builder(scene, facets);
+    for (std::uint32_t p = 0; p < facets.patch_count; ++p)
+        builder.add_patch(p);
+    builder.make_groups();
+    facets.patch_first_facet.push_back(std::uint32_t(facets.facets.size()));
+    measure(scene, facets);
+    return facets;
+}
+
+} // namespace kokage::bundles

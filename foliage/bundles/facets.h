@@ -1,0 +1,77 @@
+#pragma once
+// A scene's patches as flat convex polygons, the form in which lines are drawn through them.
+//
+// Patch -> facets -> polygons: a facet is the part of a leaf that lies in one plane (a flat leaf is one facet, a folded
+// one two), or a whole piece of bark, whose front is all that light can reach. A polygon is a convex flat part of a
+// facet (a rhombic leaf of two triangles is one polygon of four corners). Geometry is moved to the scene's centre and
+// scaled to a diagonal of 1, so that no scene is too small or too far away.
+#include "common/scene/patch_scene.h"
+
+#include <cmath>
+#include <cstdint>
+#include <vector>
+
+namespace kokage::bundles {
+
+struct Facet {
+    glm::vec3 normal{0.f}; ///< leaf: unit, front side; bark: unused
+    float area = 0;        ///< in scaled units^2, alpha holes included
+    std::uint32_t patch = 0;
+    bool bark = false;
+    /// Mean of n n^T over the facet's area (xx, yy, zz, xy, xz, yz), times a factor that makes projected_share() right
+    /// on average: exact for flat leaves and for tubes, within a few percent for other bark.
+    float form[6] = {0, 0, 0, 0, 0, 0};
+
+    /// Projected area over area, both sides counted: the mean of |n . direction|.
+    float projected_share(const glm::vec3& d) const {
+        const float q = form[0] * d.x * d.x + form[1] * d.y * d.y + form[2] * d.z * d.z +
+                        2 * (form[3] * d.x * d.y + form[4] * d.x * d.z + form[5] * d.y * d.z);
+        return q > 0 ? std::sqrt(q) : 0.f;
+    }
+};
+
+/// Texture coordinates as an affine function of scaled position, for polygons with a mask.
+struct TextureMap {
+    glm::vec3 point; ///< a point of the polygon, scaled
+    glm::vec2 uv;    ///< its texture coordinate
+    glm::vec3 u_gradient, v_gradient;
+};
+
+/// Polygons of one corner count, one array a quantity, in patch order; padded so that whole vectors may be read.
+struct PolygonGroup {
+    static constexpr std::size_t kPadding = 64;
+    int corners = 3;
+    std::size_t count = 0, stride = 0; ///< corner k of polygon i is at k * stride + i
+    std::vector<float> x, y, z;        ///< counter-clockwise seen from the front
+    std::vector<float> normal_x, normal_y, normal_z;
+    std::vector<std::uint32_t> face; ///< see Facets::face_count; bark: of the face that looks to the near end
+    std::vector<std::uint8_t> bark;
+    std::vector<std::int16_t> mask;  ///< index in PatchScene::masks, -1 = solid
+    std::vector<TextureMap> texture; ///< empty when the scene has no masks
+};
+
+struct Facets {
+    static constexpr int kMaxCorners = 8;
+
+    double scale = 1; ///< scaled = (metres - centre) * scale
+    glm::dvec3 centre{0.0};
+    std::vector<PolygonGroup> groups; ///< of 3, 4, ... kMaxCorners corners, those that occur
+    std::vector<Facet> facets;        ///< leaf facets first, then bark facets
+    std::uint32_t leaf_facet_count = 0;
+    std::vector<std::uint32_t> patch_first_facet; ///< patch count + 1
+    std::vector<float> patch_area;                ///< scaled units^2, holes included
+    std::uint32_t patch_count = 0;
+    float mean_leaf_area = 0;      ///< of leaf patches with an area (of all patches if there is no leaf)
+    glm::vec3 low{0.f}, high{0.f}; ///< bounds, scaled
+
+    /// What a line meets is a face: leaf facet f is face f; bark facet b (counted from leaf_facet_count) has two,
+    /// leaf_facet_count + 2b where its front looks to the near end of the line, + 1 where it looks to the far end.
+    std::uint32_t face_count() const {
+        return leaf_facet_count + 2 * (std::uint32_t(facets.size()) - leaf_facet_count);
+    }
+};
+
+/// Triangles without area are left out; a patch may end up without facets. Leaf patches must come before bark patches.
+Facets make_facets(const PatchScene& scene);
+
+} // namespace kokage::bundles
