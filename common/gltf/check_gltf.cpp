@@ -15,6 +15,8 @@ namespace kokage {
 namespace {
 
 constexpr std::size_t kMaximumElements = std::size_t(1) << 27;
+/// An accessor without a buffer view holds zeros (which sparse values may replace), however short the file is.
+constexpr std::size_t kMaximumZeros = std::size_t(1) << 22;
 
 constexpr std::array<std::string_view, 22> kUnderstood = {
     // Read.
@@ -218,8 +220,8 @@ void check_gltf_accessors(const tinygltf::Model& model, const std::string& path)
                           tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type)));
         if (accessor.bufferView >= 0)
             check_span(model, accessor.bufferView, accessor.byteOffset, accessor.count, element, true, place, path);
-        else if (!accessor.sparse.isSparse)
-            continue; // zeros, by the specification
+        else if (accessor.count > kMaximumZeros)
+            fail(path, place + ": " + std::to_string(accessor.count) + " elements, but no data for them");
         if (!accessor.sparse.isSparse)
             continue;
         const auto& sparse = accessor.sparse;

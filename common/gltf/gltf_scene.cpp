@@ -44,12 +44,11 @@ glm::dmat4 local_transform(const GltfDocument& document, int index) {
     return result;
 }
 
-/// Walks nodes without recursion, so that a deep chain can't exhaust the stack; a node that is met twice is an error.
+/// Walks nodes without recursion, so that a deep chain can't exhaust the stack. Nodes form trees, or an error is
+/// thrown.
 class SceneWalk {
   public:
-    explicit SceneWalk(const GltfDocument& document)
-        : document_(document), parent_(document.model().nodes.size(), -1),
-          visited_(document.model().nodes.size(), false) {
+    explicit SceneWalk(const GltfDocument& document) : document_(document), parent_(document.model().nodes.size(), -1) {
         const auto& nodes = document.model().nodes;
         for (std::size_t i = 0; i < nodes.size(); ++i)
             for (const int child : nodes[i].children) {
@@ -58,9 +57,11 @@ class SceneWalk {
                     document.fail("node " + std::to_string(child) + " is a child of two nodes, or of itself");
                 parent_[std::size_t(child)] = int(i);
             }
+        order_nodes();
     }
 
-    /// Roots that bring every mesh of the default scene once.
+    /// The nodes of the default scene. Some exporters list a child among a scene's roots, and sometimes its parent as
+    /// well.
     std::vector<int> roots(std::vector<std::string>& notes) const {
         const tinygltf::Model& model = document_.model();
         if (model.scenes.empty()) {
@@ -81,40 +82,58 @@ class SceneWalk {
                     notes.push_back("the default scene is empty: scene " + std::to_string(s) + " was read");
                     break;
                 }
-        for (std::size_t s = 0; s < model.scenes.size(); ++s)
+        for (std::size_t s = 0; s < std::min<std::size_t>(model.scenes.size(), 64); ++s)
             if (s != chosen && has_mesh(s))
                 notes.push_back("scene " + std::to_string(s) +
                                 (model.scenes[s].name.empty() ? "" : " '" + model.scenes[s].name + "'") +
                                 " was left out: one scene is read");
-        return without_descendants(model.scenes[chosen].nodes, "scene " + std::to_string(chosen));
+        for (const int index : model.scenes[chosen].nodes)
+            check_node(index, "scene " + std::to_string(chosen));
+        return model.scenes[chosen].nodes;
     }
 
-    std::vector<Instance> instances(const std::vector<int>& roots) {
+    /// The meshes of the roots and of what is below them.
+    std::vector<Instance> instances(const std::vector<int>& roots) const {
+        std::vector<bool> drawn(parent_.size(), false);
+        for (const int root : roots)
+            drawn[std::size_t(root)] = true;
         std::vector<Instance> result;
-        std::vector<std::pair<int, glm::dmat4>> stack;
-        for (auto root = roots.rbegin(); root != roots.rend(); ++root)
-            stack.emplace_back(*root, ancestors_transform(*root));
-        while (!stack.empty()) {
-            const auto [index, above] = stack.back();
-            stack.pop_back();
-            if (visited_[std::size_t(index)])
-                document_.fail("node " + std::to_string(index) + " is met twice: its children form a cycle");
-            visited_[std::size_t(index)] = true;
-            const glm::dmat4 transform = above * local_transform(document_, index);
-            const tinygltf::Node& node = document_.model().nodes[std::size_t(index)];
-            if (node.mesh >= 0) {
-                if (std::size_t(node.mesh) >= document_.model().meshes.size())
-                    document_.fail("node " + std::to_string(index) + ": mesh " + std::to_string(node.mesh) +
-                                   " does not exist");
-                result.push_back({node.mesh, index, transform});
-            }
-            for (auto child = node.children.rbegin(); child != node.children.rend(); ++child)
-                stack.emplace_back(*child, transform);
+        for (const int index : order_) {
+            const int up = parent_[std::size_t(index)];
+            drawn[std::size_t(index)] = drawn[std::size_t(index)] || (up >= 0 && drawn[std::size_t(up)]);
+            const int mesh = document_.model().nodes[std::size_t(index)].mesh;
+            if (!drawn[std::size_t(index)] || mesh < 0)
+                continue;
+            if (std::size_t(mesh) >= document_.model().meshes.size())
+                document_.fail("node " + std::to_string(index) + ": mesh " + std::to_string(mesh) + " does not exist");
+            result.push_back({mesh, index, world_[std::size_t(index)]});
         }
         return result;
     }
 
   private:
+    /// Parents before children, each node's children in order; and the products of transforms along the way.
+    void order_nodes() {
+        const auto& nodes = document_.model().nodes;
+        world_.resize(nodes.size());
+        std::vector<int> stack;
+        for (std::size_t root = nodes.size(); root-- > 0;)
+            if (parent_[root] < 0)
+                stack.push_back(int(root));
+        while (!stack.empty()) {
+            const int index = stack.back();
+            stack.pop_back();
+            order_.push_back(index);
+            const int up = parent_[std::size_t(index)];
+            const glm::dmat4 local = local_transform(document_, index);
+            world_[std::size_t(index)] = up < 0 ? local : world_[std::size_t(up)] * local;
+            const std::vector<int>& children = nodes[std::size_t(index)].children;
+            stack.insert(stack.end(), children.rbegin(), children.rend());
+        }
+        if (order_.size() != nodes.size())
+            document_.fail("its nodes form a cycle: some are their own ancestors");
+    }
+
     void check_node(int index, const std::string& place) const {
         if (index < 0 || std::size_t(index) >= document_.model().nodes.size())
             document_.fail(place + ": node " + std::to_string(index) + " does not exist");
@@ -136,48 +155,10 @@ class SceneWalk {
         return false;
     }
 
-    /// Some exporters list a child among a scene's roots (and sometimes its parent as well): each node is drawn once,
-    /// in its place.
-    std::vector<int> without_descendants(const std::vector<int>& listed, const std::string& place) const {
-        std::vector<bool> is_listed(parent_.size(), false);
-        for (const int index : listed) {
-            check_node(index, place);
-            is_listed[std::size_t(index)] = true;
-        }
-        std::vector<int> result;
-        for (const int index : listed) {
-            if (!is_listed[std::size_t(index)])
-                continue; // listed twice
-            bool below = false;
-            std::size_t steps = 0;
-            for (int up = parent_[std::size_t(index)]; up >= 0 && steps <= parent_.size();
-                 up = parent_[std::size_t(up)], ++steps)
-                below = below || is_listed[std::size_t(up)];
-            if (!below)
-                result.push_back(index);
-            else
-                continue;
-            is_listed[std::size_t(index)] = true;
-        }
-        std::sort(result.begin(), result.end());
-        result.erase(std::unique(result.begin(), result.end()), result.end());
-        return result;
-    }
-
-    glm::dmat4 ancestors_transform(int index) const {
-        glm::dmat4 result(1.0);
-        std::size_t steps = 0;
-        for (int up = parent_[std::size_t(index)]; up >= 0; up = parent_[std::size_t(up)]) {
-            if (++steps > parent_.size())
-                document_.fail("node " + std::to_string(index) + ": its parents form a cycle");
-            result = local_transform(document_, up) * result;
-        }
-        return result;
-    }
-
     const GltfDocument& document_;
     std::vector<int> parent_;
-    std::vector<bool> visited_;
+    std::vector<int> order_;
+    std::vector<glm::dmat4> world_;
 };
 
 std::vector<glm::uvec3> read_triangles(const GltfDocument& document, const tinygltf::Primitive& primitive,
@@ -378,7 +359,7 @@ GltfScene flatten(const GltfDocument& document, std::optional<glm::dvec3> origin
     GltfScene scene;
     const tinygltf::Model& model = document.model();
     note_what_is_ignored(model, scene.notes);
-    SceneWalk walk(document);
+    const SceneWalk walk(document);
     const std::vector<Instance> instances = walk.instances(walk.roots(scene.notes));
     if (instances.empty())
         document.fail("holds no mesh in its scene");
