@@ -1,187 +1,17 @@
 #include "trees/bark_skeleton.h"
 
 #include "common/geometry/point_tree.h"
-#include "common/geometry/triangle_topology.h"
+#include "trees/bark_axis.h"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <numeric>
-#include <queue>
 
 namespace kokage {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-
-/// A connected piece of bark.
-struct Piece {
-    std::vector<std::uint32_t> vertices; ///< welded representatives
-    double area = 0;
-    double thickness = 0; ///< radius of the tube that has its area and length
-    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
-};
-
-/// A node of a piece's axis tree.
-struct AxisNode {
-    glm::vec3 position{0.f};
-    float radius_m = 0;
-    std::uint32_t parent = kNone;
-    std::vector<std::uint32_t> children;
-    float reach = 0; ///< length of the longest way from here to a tip
-};
-
-class BarkMesh {
-  public:
-    BarkMesh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles)
-        : positions_(positions), welded_(weld(positions)), neighbours_(vertex_neighbours(triangles, welded_)) {
-        find_pieces(triangles);
-    }
-
-    std::vector<Piece> pieces;
-
-    const glm::vec3& position(std::uint32_t vertex) const { return positions_[vertex]; }
-
-    /// Distances along edges from a vertex, for the vertices of its piece; kept in `distance_` (others are left as they
-    /// were).
-    const std::vector<float>& distances_from(std::uint32_t base, const Piece& piece) {
-        distance_.resize(positions_.size());
-        for (const std::uint32_t v : piece.vertices)
-            distance_[v] = std::numeric_limits<float>::infinity();
-        using Entry = std::pair<float, std::uint32_t>;
-        std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
-        distance_[base] = 0;
-        queue.emplace(0.f, base);
-        while (!queue.empty()) {
-            const auto [distance, v] = queue.top();
-            queue.pop();
-            if (distance > distance_[v])
-                continue;
-            for (const std::uint32_t other : neighbours_.of(v)) {
-                const float further = distance + glm::distance(positions_[v], positions_[other]);
-                if (further < distance_[other]) {
-                    distance_[other] = further;
-                    queue.emplace(further, other);
-                }
-            }
-        }
-        return distance_;
-    }
-
-    std::vector<AxisNode> axis_tree(const Piece& piece, std::uint32_t base);
-
-  private:
-    void find_pieces(std::span<const glm::uvec3> triangles) {
-        const std::vector<std::uint32_t> component = connected_components(neighbours_);
-        std::vector<std::uint32_t> piece_of(component.size(), kNone);
-        for (std::uint32_t v = 0; v < component.size(); ++v) {
-            if (welded_[v] != v || neighbours_.of(v).empty())
-                continue;
-            if (piece_of[component[v]] == kNone) {
-                piece_of[component[v]] = std::uint32_t(pieces.size());
-                pieces.emplace_back();
-            }
-            Piece& piece = pieces[piece_of[component[v]]];
-            piece.vertices.push_back(v);
-            piece.low = glm::min(piece.low, glm::dvec3(positions_[v]));
-            piece.high = glm::max(piece.high, glm::dvec3(positions_[v]));
-        }
-        for (const glm::uvec3& t : triangles) {
-            const std::uint32_t piece = piece_of[component[welded_[t.x]]];
-            const glm::dvec3 a(positions_[t.x]), b(positions_[t.y]), c(positions_[t.z]);
-            if (piece != kNone)
-                pieces[piece].area += 0.5 * glm::length(glm::cross(b - a, c - a));
-        }
-        for (Piece& piece : pieces) {
-            const double length = glm::length(piece.high - piece.low);
-            piece.thickness = length > 0 ? piece.area / (2 * kPiDouble * length) : 0;
-        }
-    }
-
-    std::span<const glm::vec3> positions_;
-    std::vector<std::uint32_t> welded_;
-    Adjacency neighbours_;
-    std::vector<float> distance_;
-    std::vector<std::uint32_t> node_of_; ///< per vertex, within the piece at work
-};
-
-std::vector<AxisNode> BarkMesh::axis_tree(const Piece& piece, std::uint32_t base) {
-    const std::vector<float>& distance = distances_from(base, piece);
-    float furthest = 0;
-    for (const std::uint32_t v : piece.vertices)
-        furthest = std::max(furthest, distance[v]);
-    const float width = std::max(1.5f * float(piece.thickness), furthest / 256);
-    const auto level = [&](std::uint32_t v) { return width > 0 ? int(distance[v] / width) : 0; };
-
-    // A node for each connected part of a level.
-    node_of_.resize(positions_.size());
-    for (const std::uint32_t v : piece.vertices)
-        node_of_[v] = kNone;
-    std::vector<AxisNode> nodes;
-    std::vector<int> node_level;
-    std::vector<std::uint32_t> stack;
-    for (const std::uint32_t start : piece.vertices) {
-        if (node_of_[start] != kNone)
-            continue;
-        const std::uint32_t node = std::uint32_t(nodes.size());
-        std::vector<std::uint32_t> members;
-        node_of_[start] = node;
-        stack.assign(1, start);
-        while (!stack.empty()) {
-            const std::uint32_t v = stack.back();
-            stack.pop_back();
-            members.push_back(v);
-            for (const std::uint32_t other : neighbours_.of(v))
-                if (node_of_[other] == kNone && level(other) == level(start)) {
-                    node_of_[other] = node;
-                    stack.push_back(other);
-                }
-        }
-        glm::dvec3 centre(0.0);
-        for (const std::uint32_t v : members)
-            centre += glm::dvec3(positions_[v]);
-        centre /= double(members.size());
-        double radius = 0;
-        for (const std::uint32_t v : members)
-            radius += glm::distance(glm::dvec3(positions_[v]), centre);
-        nodes.push_back({glm::vec3(centre), float(radius / double(members.size())), kNone, {}, 0.f});
-        node_level.push_back(level(start));
-    }
-    // Each node hangs on its neighbour in the highest level below it.
-    for (const std::uint32_t v : piece.vertices)
-        for (const std::uint32_t other : neighbours_.of(v)) {
-            const std::uint32_t here = node_of_[v], there = node_of_[other];
-            if (node_level[there] >= node_level[here])
-                continue;
-            std::uint32_t& parent = nodes[here].parent;
-            if (parent == kNone || node_level[there] > node_level[parent] ||
-                (node_level[there] == node_level[parent] && there < parent))
-                parent = there;
-        }
-    // Root first, then by level, so that parents come before children.
-    std::vector<std::uint32_t> order(nodes.size()), rank(nodes.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return node_level[a] < node_level[b]; });
-    for (std::uint32_t i = 0; i < order.size(); ++i)
-        rank[order[i]] = i;
-    std::vector<AxisNode> sorted(nodes.size());
-    for (std::uint32_t i = 0; i < order.size(); ++i) {
-        sorted[i] = nodes[order[i]];
-        if (sorted[i].parent != kNone)
-            sorted[i].parent = rank[sorted[i].parent];
-        else if (i > 0)
-            sorted[i].parent = 0;
-        if (i > 0)
-            sorted[sorted[i].parent].children.push_back(i);
-    }
-    for (std::uint32_t i = std::uint32_t(sorted.size()); i-- > 1;) {
-        AxisNode& parent = sorted[sorted[i].parent];
-        parent.reach = std::max(parent.reach, sorted[i].reach + glm::distance(parent.position, sorted[i].position));
-    }
-    return sorted;
-}
 
 /// Turns a piece's axis tree into branches, the thickest way through it first.
 class BranchWriter {
@@ -260,7 +90,7 @@ struct Contact {
     float depth = std::numeric_limits<float>::infinity(); ///< distance from the axis less its radius: negative inside
 };
 
-Contact deepest_contact(const BarkMesh& mesh, const Piece& piece, const GrowingPointTree& tree,
+Contact deepest_contact(const BarkMesh& mesh, const BarkPiece& piece, const GrowingPointTree& tree,
                         const AxisSamples& axes) {
     Contact contact;
     for (const std::uint32_t v : piece.vertices) {
@@ -274,7 +104,7 @@ Contact deepest_contact(const BarkMesh& mesh, const Piece& piece, const GrowingP
     return contact;
 }
 
-std::uint32_t lowest_vertex(const BarkMesh& mesh, const Piece& piece) {
+std::uint32_t lowest_vertex(const BarkMesh& mesh, const BarkPiece& piece) {
     return *std::min_element(piece.vertices.begin(), piece.vertices.end(), [&](std::uint32_t a, std::uint32_t b) {
         const float ya = mesh.position(a).y, yb = mesh.position(b).y;
         return ya != yb ? ya < yb : a < b;
@@ -282,7 +112,7 @@ std::uint32_t lowest_vertex(const BarkMesh& mesh, const Piece& piece) {
 }
 
 /// The trunk first, then thick before thin.
-std::vector<std::size_t> joining_order(const std::vector<Piece>& pieces, double low, double high) {
+std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces, double low, double high) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
@@ -323,19 +153,19 @@ AxisSamples sample_axes(const Skeleton& skeleton, std::size_t first_branch) {
 BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     BarkSkeleton result;
     BarkMesh mesh(positions, triangles);
-    result.pieces = mesh.pieces.size();
-    if (mesh.pieces.empty())
+    result.pieces = mesh.pieces().size();
+    if (mesh.pieces().empty())
         return result;
     double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const Piece& piece : mesh.pieces) {
+    for (const BarkPiece& piece : mesh.pieces()) {
         low = std::min(low, piece.low.y);
         high = std::max(high, piece.high.y);
     }
     AxisSamples axes;
     GrowingPointTree tree;
     BranchWriter writer(result.skeleton);
-    for (const std::size_t p : joining_order(mesh.pieces, low, high)) {
-        const Piece& piece = mesh.pieces[p];
+    for (const std::size_t p : joining_order(mesh.pieces(), low, high)) {
+        const BarkPiece& piece = mesh.pieces()[p];
         const Contact contact = deepest_contact(mesh, piece, tree, axes);
         const bool touches = contact.sample != kNone && contact.depth <= float(piece.thickness);
         const bool stem = contact.sample == kNone || (!touches && piece.low.y <= low + 0.1 * (high - low));

@@ -11,7 +11,7 @@ namespace kokage {
 struct ReadOptions {
     /// Names of materials (or of meshes, or nodes) that are foliage, any case; everything else is then bark. Empty:
     /// found by itself.
-    std::vector<std::string> foliage_materials;
+    std::vector<std::string> foliage_materials = {};
     /// Metres: larger connected foliage is cut into patches of about this radius; 0 = 5 % of the crown's radius.
     float leaf_size = 0;
     /// The file's unit in metres: positions are multiplied by it.

@@ -1,0 +1,92 @@
+// Khronos' glTF validator finds no error in what we write.
+#include "tests/support/program_run.h"
+#include "tests/support/tree_files.h"
+#include "trees/read_tree.h"
+
+#include <cstdio>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+/// Where npm put the validator: KOKAGE_NODE_MODULES, or tests/validate/node_modules; empty if nowhere.
+std::string node_modules() {
+    const char* named = std::getenv("KOKAGE_NODE_MODULES");
+    const std::filesystem::path folder = named && *named
+                                             ? std::filesystem::path(named)
+                                             : std::filesystem::path(KOKAGE_TESTS_FOLDER) / "validate" / "node_modules";
+    const bool there =
+        std::filesystem::exists(folder / "gltf-validator") && std::system("node --version >/dev/null 2>&1") == 0;
+    return there ? folder.string() : "";
+}
+
+nlohmann::json validate_files(const std::string& modules, const std::vector<std::filesystem::path>& files) {
+    std::string command = std::string("node '") + KOKAGE_TESTS_FOLDER + "/validate/validate.js' '" + modules + "'";
+    for (const std::filesystem::path& file : files)
+        command += " '" + file.string() + "'";
+    FILE* pipe = popen(command.c_str(), "r");
+    std::string output;
+    char block[4096];
+    while (const std::size_t count = std::fread(block, 1, sizeof block, pipe))
+        output.append(block, count);
+    EXPECT_EQ(pclose(pipe), 0);
+    return nlohmann::json::parse(output);
+}
+
+void expect_valid(const std::string& modules, const std::vector<std::filesystem::path>& files) {
+    const nlohmann::json reports = validate_files(modules, files);
+    ASSERT_EQ(reports.size(), files.size());
+    for (std::size_t i = 0; i < files.size(); ++i) {
+        const nlohmann::json& issues = reports[i]["issues"];
+        EXPECT_EQ(issues["numErrors"], 0) << files[i] << ": " << issues["messages"].dump(1);
+        EXPECT_EQ(issues["numWarnings"], 0) << files[i] << ": " << issues["messages"].dump(1);
+        EXPECT_GT(reports[i]["info"]["totalTriangleCount"], 0) << files[i];
+    }
+}
+
+TEST(Validator, FindsNoErrorInGrownTrees) {
+    const std::string modules = node_modules();
+    if (modules.empty())
+        GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
+    TemporaryFolder folder;
+    const Tree oak = small_oak();
+    const ShadedAttributes light = random_light(oak);
+    write_tree(folder / "plain.glb", oak);
+    write_tree(folder / "shaded.glb", oak, &light);
+    write_tree(folder / "split.glb", oak, &light, {.split_sides = true});
+    expect_valid(modules, {folder / "plain.glb", folder / "shaded.glb", folder / "split.glb"});
+}
+
+TEST(Validator, FindsTheErrorInABrokenFile) {
+    const std::string modules = node_modules();
+    if (modules.empty())
+        GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
+    TemporaryFolder folder;
+    std::ofstream(folder / "broken.gltf") << R"({"asset":{"version":"2.0"},"scene":3})";
+    EXPECT_GT(validate_files(modules, {folder / "broken.gltf"})[0]["issues"]["numErrors"], 0);
+}
+
+TEST(Validator, FindsNoErrorInReexportedForeignTrees) {
+    const std::string modules = node_modules();
+    if (modules.empty())
+        GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
+    const auto data = data_folder();
+    if (!data)
+        GTEST_SKIP() << "skipped: KOKAGE_DATA is not set";
+    TemporaryFolder folder;
+    std::vector<std::filesystem::path> files;
+    for (const char* name :
+         {"eztree_bush_1", "quaternius_common_tree_1", "quaternius_tex_pine_1", "kenney_tree_oak_fall"}) {
+        const Tree tree = read_tree(*data / "trees" / (std::string(name) + ".glb"));
+        const ShadedAttributes light = random_light(tree);
+        files.push_back(folder / (std::string(name) + ".glb"));
+        write_tree(files.back(), tree);
+        files.push_back(folder / (std::string(name) + "_shaded.glb"));
+        write_tree(files.back(), tree, &light, {.split_sides = true});
+    }
+    expect_valid(modules, files);
+}
+
+} // namespace
+} // namespace kokage

@@ -1,0 +1,54 @@
+#pragma once
+// The axes of bark: each connected piece thinned to a tree of points. Private to trees.
+#include "common/geometry/triangle_topology.h"
+
+#include <limits>
+#include <span>
+
+namespace kokage {
+
+/// A connected piece of bark.
+struct BarkPiece {
+    std::vector<std::uint32_t> vertices; ///< one index for each place
+    double area = 0;
+    double thickness = 0; ///< radius of the tube that has its area and length
+    glm::dvec3 low{std::numeric_limits<double>::infinity()}, high{-std::numeric_limits<double>::infinity()};
+};
+
+/// A point of a piece's axis. Parents come before children; the first has no parent.
+struct AxisNode {
+    glm::vec3 position{0.f};
+    float radius_m = 0;
+    std::uint32_t parent = ~0u;
+    std::vector<std::uint32_t> children;
+    float reach = 0; ///< length of the longest way from here to a tip
+};
+
+class BarkMesh {
+  public:
+    /// The arrays must outlive it.
+    BarkMesh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles);
+
+    const std::vector<BarkPiece>& pieces() const { return pieces_; }
+    const glm::vec3& position(std::uint32_t vertex) const { return positions_[vertex]; }
+
+    /// The axis tree of a piece, beginning at `base` (a vertex of the piece). Level sets of the distance along the
+    /// surface, at their centroids (Verroust and Lazarus 1999). Distance is taken from the tip farthest from the base:
+    /// around a thin tip all rails of a tube are equally long, around a thick base they are not, and slanted level sets
+    /// would look like forks. Loops of level sets, which no tree has, are closed by joining the sets; points nearer to
+    /// each other than the wood is thick become one.
+    std::vector<AxisNode> axis_tree(const BarkPiece& piece, std::uint32_t base);
+
+  private:
+    void find_pieces(std::span<const glm::uvec3> triangles);
+    void measure_distances(std::uint32_t from, const BarkPiece& piece);
+
+    std::span<const glm::vec3> positions_;
+    std::vector<std::uint32_t> welded_;
+    Adjacency neighbours_;
+    std::vector<BarkPiece> pieces_;
+    std::vector<float> distance_;        ///< per vertex, within the piece at work
+    std::vector<std::uint32_t> node_of_; ///< per vertex, within the piece at work
+};
+
+} // namespace kokage
