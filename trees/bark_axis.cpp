@@ -160,15 +160,41 @@ void BarkMesh::measure_distances(std::uint32_t from, const BarkPiece& piece) {
     }
 }
 
+std::uint32_t BarkMesh::furthest_vertex(const BarkPiece& piece) const {
+    return *std::max_element(piece.vertices.begin(), piece.vertices.end(),
+                             [&](std::uint32_t a, std::uint32_t b) { return distance_[a] < distance_[b]; });
+}
+
+std::array<BarkEnd, 2> BarkMesh::ends(const BarkPiece& piece) {
+    std::array<BarkEnd, 2> result;
+    measure_distances(piece.vertices.front(), piece);
+    result[1].vertex = furthest_vertex(piece);
+    for (std::size_t e = 0; e < 2; ++e) { // each as seen from the other: the ring of vertices that are farthest away
+        measure_distances(result[1 - e].vertex, piece);
+        result[e].vertex = furthest_vertex(piece);
+        const float limit = distance_[result[e].vertex] - float(piece.thickness);
+        glm::dvec3 sum(0.0);
+        std::vector<std::uint32_t> ring;
+        for (const std::uint32_t v : piece.vertices)
+            if (distance_[v] >= limit) {
+                ring.push_back(v);
+                sum += glm::dvec3(positions_[v]);
+            }
+        sum /= double(ring.size());
+        double radius = 0;
+        for (const std::uint32_t v : ring)
+            radius += glm::distance(glm::dvec3(positions_[v]), sum);
+        result[e].centre = glm::vec3(sum);
+        result[e].radius_m = float(radius / double(ring.size()));
+    }
+    return result;
+}
+
 std::vector<AxisNode> BarkMesh::axis_tree(const BarkPiece& piece, std::uint32_t base) {
-    const auto furthest_vertex = [&] {
-        return *std::max_element(piece.vertices.begin(), piece.vertices.end(),
-                                 [&](std::uint32_t a, std::uint32_t b) { return distance_[a] < distance_[b]; });
-    };
     measure_distances(base, piece);
-    const std::uint32_t tip = furthest_vertex();
+    const std::uint32_t tip = furthest_vertex(piece);
     measure_distances(tip, piece);
-    const float width = std::max(1.5f * float(piece.thickness), distance_[furthest_vertex()] / 256);
+    const float width = std::max(1.5f * float(piece.thickness), distance_[furthest_vertex(piece)] / 256);
     const auto level = [&](std::uint32_t v) { return width > 0 ? int(distance_[v] / width) : 0; };
 
     // A set for each connected part of a level.

@@ -2,6 +2,7 @@
 // The axes of bark: each connected piece thinned to a tree of points. Private to trees.
 #include "common/geometry/triangle_topology.h"
 
+#include <array>
 #include <limits>
 #include <span>
 
@@ -24,6 +25,13 @@ struct AxisNode {
     float reach = 0; ///< length of the longest way from here to a tip
 };
 
+/// Where a piece ends.
+struct BarkEnd {
+    std::uint32_t vertex = 0;
+    glm::vec3 centre{0.f};
+    float radius_m = 0;
+};
+
 class BarkMesh {
   public:
     /// The arrays must outlive it.
@@ -31,6 +39,9 @@ class BarkMesh {
 
     const std::vector<BarkPiece>& pieces() const { return pieces_; }
     const glm::vec3& position(std::uint32_t vertex) const { return positions_[vertex]; }
+
+    /// The two ends that lie farthest apart along the surface.
+    std::array<BarkEnd, 2> ends(const BarkPiece& piece);
 
     /// The axis tree of a piece, beginning at `base` (a vertex of the piece). Level sets of the distance along the
     /// surface, at their centroids (Verroust and Lazarus 1999). Distance is taken from the tip farthest from the base:
@@ -42,6 +53,7 @@ class BarkMesh {
   private:
     void find_pieces(std::span<const glm::uvec3> triangles);
     void measure_distances(std::uint32_t from, const BarkPiece& piece);
+    std::uint32_t furthest_vertex(const BarkPiece& piece) const;
 
     std::span<const glm::vec3> positions_;
     std::vector<std::uint32_t> welded_;

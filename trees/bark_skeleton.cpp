@@ -4,6 +4,7 @@
 #include "trees/bark_axis.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numeric>
@@ -84,24 +85,74 @@ class BranchWriter {
     Skeleton& skeleton_;
 };
 
-/// The vertex of a piece that reaches deepest into wood that is already there, and the sample it reaches.
+/// Where a piece meets wood that is already there.
 struct Contact {
     std::uint32_t vertex = kNone, sample = kNone;
     float depth = std::numeric_limits<float>::infinity(); ///< distance from the axis less its radius: negative inside
+    bool touches = false;
 };
 
-Contact deepest_contact(const BarkMesh& mesh, const BarkPiece& piece, const GrowingPointTree& tree,
-                        const AxisSamples& axes) {
-    Contact contact;
-    for (const std::uint32_t v : piece.vertices) {
-        const NearestPoint nearest = tree.nearest(mesh.position(v));
-        if (!nearest.found())
-            break;
-        const float depth = nearest.distance - axes.samples[nearest.index].radius_m;
-        if (depth < contact.depth)
-            contact = {v, nearest.index, depth};
+/// Wood that later pieces may hang on.
+class StandingWood {
+  public:
+    /// The part of a branch within its parent is no place to hang on: the parent is.
+    void add(const Skeleton& skeleton, std::size_t first_branch) {
+        for (const AxisSamples::Sample& sample : sample_axes(skeleton, first_branch).samples) {
+            const Branch& branch = skeleton.branches[sample.branch];
+            if (branch.parent >= 0) {
+                const glm::vec3& joint = branch.nodes[0].position;
+                if (glm::distance(joint, sample.position) <=
+                    radius_near(skeleton.branches[std::size_t(branch.parent)], joint))
+                    continue;
+            }
+            samples.push_back(sample);
+            tree_.add(sample.position);
+        }
     }
-    return contact;
+
+    Contact nearest(const glm::vec3& place, std::uint32_t vertex, float reach) const {
+        const NearestPoint found = tree_.nearest(place);
+        if (!found.found())
+            return {};
+        const float depth = found.distance - samples[found.index].radius_m;
+        return {vertex, found.index, depth, depth <= reach};
+    }
+
+    std::vector<AxisSamples::Sample> samples;
+
+  private:
+    static float radius_near(const Branch& branch, const glm::vec3& place) {
+        const auto nearest = std::min_element(
+            branch.nodes.begin(), branch.nodes.end(), [&](const Branch::Node& a, const Branch::Node& b) {
+                return glm::distance(a.position, place) < glm::distance(b.position, place);
+            });
+        return nearest->radius_m;
+    }
+
+    GrowingPointTree tree_;
+};
+
+/// An end of the piece that lies in or on standing wood (the thicker one, if both do); else whichever vertex reaches
+/// deepest.
+Contact find_contact(BarkMesh& mesh, const BarkPiece& piece, const StandingWood& wood) {
+    const std::array<BarkEnd, 2> ends = mesh.ends(piece);
+    std::array<Contact, 2> contacts;
+    for (std::size_t e = 0; e < 2; ++e)
+        contacts[e] = wood.nearest(ends[e].centre, ends[e].vertex, 0.5f * ends[e].radius_m);
+    if (contacts[0].touches || contacts[1].touches) {
+        const bool first = contacts[0].touches != contacts[1].touches   ? contacts[0].touches
+                           : ends[0].radius_m > 1.2f * ends[1].radius_m ? true
+                           : ends[1].radius_m > 1.2f * ends[0].radius_m ? false
+                                                                        : contacts[0].depth < contacts[1].depth;
+        return contacts[first ? 0 : 1];
+    }
+    Contact deepest;
+    for (const std::uint32_t v : piece.vertices) {
+        const Contact contact = wood.nearest(mesh.position(v), v, float(piece.thickness));
+        if (contact.depth < deepest.depth)
+            deepest = contact;
+    }
+    return deepest;
 }
 
 std::uint32_t lowest_vertex(const BarkMesh& mesh, const BarkPiece& piece) {
@@ -161,28 +212,23 @@ BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<
         low = std::min(low, piece.low.y);
         high = std::max(high, piece.high.y);
     }
-    AxisSamples axes;
-    GrowingPointTree tree;
+    StandingWood wood;
     BranchWriter writer(result.skeleton);
     for (const std::size_t p : joining_order(mesh.pieces(), low, high)) {
         const BarkPiece& piece = mesh.pieces()[p];
-        const Contact contact = deepest_contact(mesh, piece, tree, axes);
-        const bool touches = contact.sample != kNone && contact.depth <= float(piece.thickness);
-        const bool stem = contact.sample == kNone || (!touches && piece.low.y <= low + 0.1 * (high - low));
+        const Contact contact = find_contact(mesh, piece, wood);
+        const bool stem = contact.sample == kNone || (!contact.touches && piece.low.y <= low + 0.1 * (high - low));
         const std::size_t first = result.skeleton.branches.size();
         if (stem) {
             writer.write(mesh.axis_tree(piece, lowest_vertex(mesh, piece)), -1, nullptr);
             ++result.stems;
         } else {
-            const AxisSamples::Sample& sample = axes.samples[contact.sample];
+            const AxisSamples::Sample& sample = wood.samples[contact.sample];
             const Branch::Node joint{sample.position, sample.radius_m};
             writer.write(mesh.axis_tree(piece, contact.vertex), std::int32_t(sample.branch), &joint);
-            result.floating += touches ? 0 : 1;
+            result.floating += contact.touches ? 0 : 1;
         }
-        for (const AxisSamples::Sample& sample : sample_axes(result.skeleton, first).samples) {
-            axes.samples.push_back(sample);
-            tree.add(sample.position);
-        }
+        wood.add(result.skeleton, first);
     }
     return result;
 }

@@ -122,6 +122,15 @@ class ExtrasReader {
         good = false;
         return none;
     }
+    /// An array; tinygltf writes empty ones as null, so that is empty as well.
+    const nlohmann::json& list(const nlohmann::json& object, const char* name) {
+        static const nlohmann::json none = nlohmann::json::array();
+        const auto found = object.is_object() ? object.find(name) : object.end();
+        if (!object.is_object() || found == object.end() || found->is_null())
+            return none;
+        good = good && found->is_array();
+        return found->is_array() ? *found : none;
+    }
     std::uint64_t count(const nlohmann::json& object, const char* name) {
         const nlohmann::json& value = member(object, name);
         good = good && value.is_number_unsigned();
@@ -294,8 +303,8 @@ bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const GltfScen
 }
 
 bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const GltfScene& scene, Tree& tree) {
-    const nlohmann::json& materials = reader.member(extras, "materials");
-    if (!reader.good || !materials.is_array() || materials.size() >= scene.materials.size() + 1)
+    const nlohmann::json& materials = reader.list(extras, "materials");
+    if (!reader.good || materials.size() >= scene.materials.size() + 1)
         return false;
     std::vector<std::string> ignored;
     for (std::size_t m = 0; m < materials.size(); ++m) {
@@ -303,6 +312,14 @@ bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const Gl
         material.double_sided = reader.flag(materials[m], "double_sided");
         if (!reader.flag(materials[m], "has_color"))
             material.base_color_texture = nullptr;
+        if (const nlohmann::json& transmission = reader.list(materials[m], "diffuse_transmission");
+            transmission.size() == 4) {
+            const auto number = [&](std::size_t i) {
+                return transmission[i].is_number() ? transmission[i].get<float>() : 0.f;
+            };
+            material.diffuse_transmission = number(0);
+            material.diffuse_transmission_color = {number(1), number(2), number(3)};
+        }
         tree.materials.push_back(std::move(material));
     }
     return reader.good;
@@ -346,10 +363,14 @@ nlohmann::json write_extras(GltfWriter& writer, const Tree& tree, const std::vec
                         {"branch", data(a.leaf_branch, "branch of leaf")}};
     extras["bark_patches"] = tree.bark_patch_count;
     extras["materials"] = nlohmann::json::array();
-    for (const TreeMaterial& material : tree.materials)
-        extras["materials"].push_back(
-            {{"double_sided", material.double_sided},
-             {"has_color", material.base_color_texture && !material.base_color_texture->empty()}});
+    for (const TreeMaterial& material : tree.materials) {
+        nlohmann::json entry = {{"double_sided", material.double_sided},
+                                {"has_color", material.base_color_texture && !material.base_color_texture->empty()}};
+        const glm::vec3& color = material.diffuse_transmission_color;
+        if (material.diffuse_transmission >= 0)
+            entry["diffuse_transmission"] = {material.diffuse_transmission, color.r, color.g, color.b};
+        extras["materials"].push_back(std::move(entry));
+    }
     extras["parts"] = nlohmann::json::array();
     for (std::size_t p = 0; p < tree.parts.size(); ++p) {
         const TreePart& part = tree.parts[p];
@@ -399,11 +420,11 @@ std::optional<OwnTree> read_own_tree(const GltfDocument& document, std::string& 
     own.tree.source = reader.text(extras, "source");
     own.tree.branching_known = reader.flag(extras, "branching_known");
     own.tree.bark_patch_count = std::uint32_t(reader.count(extras, "bark_patches"));
-    for (const nlohmann::json& note : reader.member(extras, "notes"))
+    for (const nlohmann::json& note : reader.list(extras, "notes"))
         if (note.is_string())
             own.tree.notes.push_back(note.get<std::string>());
-    const nlohmann::json& parts = reader.member(extras, "parts");
-    if (!reader.good || !parts.is_array())
+    const nlohmann::json& parts = reader.list(extras, "parts");
+    if (!reader.good)
         return std::nullopt;
     const bool has_mesh = std::any_of(parts.begin(), parts.end(), [](const nlohmann::json& part) {
         return part.is_object() && part.value("mesh", nlohmann::json(-1)) != nlohmann::json(-1);

@@ -9,9 +9,9 @@
 //                     nodes: accessor VEC4, position and radius
 //   leaves            count; centre: accessor VEC3; branch: accessor (2^32 - 1 = unknown)
 //   bark_patches      count
-//   materials         [{double_sided, has_color}], as long as Tree::materials
-//   parts             [{kind, material, mesh, primitive, vertices, triangle_patch: accessor, duplicate_of: accessor,
-//   has_uvs}]
+//   materials         [{double_sided, has_color, diffuse_transmission: [factor, r, g, b]}], as long as Tree::materials
+//   parts             [{kind, material, mesh, primitive, vertices, triangles, duplicates; triangle_patch, duplicate_of:
+//                     accessors}]
 //                     the vertices beyond `vertices` repeat those that duplicate_of names, where a patch's attributes
 //                     need their own
 //   light_maps        count; position, radius, generation, bands, coefficients: accessors

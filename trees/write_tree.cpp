@@ -199,7 +199,9 @@ class TreeWriter {
         if (has_alpha)
             material.alphaCutoff = source.alpha_cutoff;
         material.doubleSided = source.double_sided;
-        if (source.diffuse_transmission >= 0) {
+        // Beside KHR_materials_unlit viewers would ignore it, and the validator warns: shaded files keep it in extras
+        // alone.
+        if (source.diffuse_transmission >= 0 && !shaded_) {
             tinygltf::Value::Object transmission;
             transmission["diffuseTransmissionFactor"] = tinygltf::Value(double(source.diffuse_transmission));
             const glm::vec3& color = source.diffuse_transmission_color;
