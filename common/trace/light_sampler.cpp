@@ -52,16 +52,33 @@ LightSample LightSampler::sample_distant(const Distant& distant, glm::vec2 numbe
             glm::vec3(glm::dvec3(texel.irradiance) / share)};
 }
 
+/// The most that a light can bring if nothing shadows it. A sum of channels: every channel's own error counts alike, so
+/// that blue must not be starved.
+float LightSampler::bound(const Distant& light, const glm::vec3& normal, const glm::vec3& front,
+                          const glm::vec3& back) {
+    const float cosine = glm::dot(normal, light.direction);
+    return largest_cosine(cosine, light.cos_half, light.sin_half) * glm::dot(front, light.irradiance) +
+           largest_cosine(-cosine, light.cos_half, light.sin_half) * glm::dot(back, light.irradiance);
+}
+
+/// Under a sun alone there is nothing to choose.
+std::optional<LightRay> LightSampler::only_light(const glm::vec3& normal, const glm::vec3& front, const glm::vec3& back,
+                                                 glm::vec2 numbers) const {
+    if (!(bound(distant_[0], normal, front, back) > 0))
+        return std::nullopt;
+    const LightSample drawn = sample_distant(distant_[0], numbers);
+    return LightRay{drawn.direction, INFINITY, drawn.irradiance_over_pdf};
+}
+
 std::optional<LightRay> LightSampler::sample(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& front,
                                              const glm::vec3& back, float choice, glm::vec2 numbers) const {
+    if (distant_.size() == 1 && points_.empty())
+        return only_light(normal, front, back, numbers);
     thread_local std::vector<double> cumulative; // scratch of one call
     cumulative.clear();
     double total = 0;
     for (const Distant& light : distant_) {
-        const float cosine = glm::dot(normal, light.direction);
-        // Sums of channels: every channel's own error counts alike, so that blue must not be starved.
-        total += double(largest_cosine(cosine, light.cos_half, light.sin_half)) * glm::dot(front, light.irradiance) +
-                 double(largest_cosine(-cosine, light.cos_half, light.sin_half)) * glm::dot(back, light.irradiance);
+        total += double(bound(light, normal, front, back));
         cumulative.push_back(total);
     }
     for (const Point& light : points_) {

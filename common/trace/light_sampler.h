@@ -28,6 +28,9 @@ class LightSampler {
   private:
     struct Distant;
     static LightSample sample_distant(const Distant& light, glm::vec2 numbers);
+    static float bound(const Distant& light, const glm::vec3& normal, const glm::vec3& front, const glm::vec3& back);
+    std::optional<LightRay> only_light(const glm::vec3& normal, const glm::vec3& front, const glm::vec3& back,
+                                       glm::vec2 numbers) const;
 
     struct Distant {
         glm::vec3 direction, irradiance;

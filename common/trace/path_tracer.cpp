@@ -48,6 +48,9 @@ glm::vec3 cosine_direction(const glm::vec3& normal, glm::vec2 numbers) {
     return squared > 1e-8f ? sum / std::sqrt(squared) : normal;
 }
 
+/// Remainders of less contrast than this are not sampled by importance.
+constexpr double kLowContrast = 2.5;
+
 float largest(const glm::vec3& colour) {
     return std::max({colour.r, colour.g, colour.b});
 }
@@ -69,23 +72,24 @@ struct PathTracer::Implementation {
     const LightSampler lights;
     std::vector<std::uint32_t> triangle_optics;
     std::vector<Optics> optics;
-    float remainder_share = 0; ///< of directions that are drawn towards the remainder's bright parts
-    float offset;
+    float remainder_share = 0;  ///< of directions that are drawn towards the remainder's bright parts
+    float offset, exact_beyond; ///< metres
     mutable ShardedCounter rays;
 
     Implementation(const RayQueries& q, const Environment& e, PathTracerOptions o)
         : queries(q), scene(q.scene()), environment(e), options(std::move(o)), remainder(e.remainder), lights(e),
-          optics(options.optics.empty() ? scene.optics : options.optics), offset(q.ray_offset()) {
+          optics(options.optics.empty() ? scene.optics : options.optics), offset(q.ray_offset()),
+          exact_beyond(4 * bounds_of(scene).diagonal()) {
         if (optics.size() != scene.optics.size())
             throw InputError("path tracer: " + std::to_string(optics.size()) +
                              " optics were given for a scene that has " + std::to_string(scene.optics.size()));
         triangle_optics.reserve(scene.triangles.size());
         for (std::uint32_t patch : scene.triangle_patch)
             triangle_optics.push_back(scene.patches[patch].optics);
-        // A constant remainder gains nothing; a few bright spots gain from any share, and half of the paths stay for
-        // the rest.
-        if (options.sample_remainder && remainder.contrast() > 1.5)
-            remainder_share = 0.5f * (1 - 1 / std::sqrt(float(remainder.contrast())));
+        // An even sky, also one whose lower half is black (contrast 2), is served best by the cosine lobe alone
+        // (measured); a few bright spots gain from any share, and half of the paths stay for the rest.
+        if (options.sample_remainder && remainder.contrast() > kLowContrast)
+            remainder_share = 0.5f * (1 - std::sqrt(float(kLowContrast / remainder.contrast())));
     }
 
     bool below_ground(const glm::vec3& point) const { return scene.ground && point.y < scene.ground->height_m; }
@@ -139,6 +143,13 @@ struct PathTracer::Implementation {
                            : glm::vec3(0);
     }
 
+    glm::vec3 point_on_triangle(const RayHit& hit) const {
+        const glm::uvec3& corners = scene.triangles[hit.triangle];
+        const glm::vec3 a = scene.positions[corners.x];
+        return a + hit.barycentric.x * (scene.positions[corners.y] - a) +
+               hit.barycentric.y * (scene.positions[corners.z] - a);
+    }
+
     /// What a ray has hit, seen from where it came; false where nothing scatters (the ground's underside).
     bool vertex_at(const RayHit& hit, const glm::vec3& origin, const glm::vec3& direction, Vertex& vertex) const {
         if (hit.ground) {
@@ -151,10 +162,8 @@ struct PathTracer::Implementation {
             vertex.transmittance = glm::vec3(0);
             return true;
         }
-        const glm::uvec3& corners = scene.triangles[hit.triangle];
-        const glm::vec3 a = scene.positions[corners.x];
-        vertex.point = a + hit.barycentric.x * (scene.positions[corners.y] - a) +
-                       hit.barycentric.y * (scene.positions[corners.z] - a);
+        // Along the ray, unless it is so long that its rounding would move the point off the triangle.
+        vertex.point = hit.distance < exact_beyond ? origin + hit.distance * direction : point_on_triangle(hit);
         vertex.normal = glm::dot(hit.geometric_normal, direction) < 0 ? hit.geometric_normal : -hit.geometric_normal;
         const Optics& optic = optics[triangle_optics[hit.triangle]];
         vertex.reflectance = optic.reflectance;
