@@ -42,11 +42,10 @@ class Run {
     Run(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out)
         : options_(options), progress_(progress), out_(out), scenes_(data_folder(options)) {}
 
-    int execute() {
+    int execute(const std::vector<PlannedScene>& plan) {
         std::filesystem::create_directories(options_.output_folder);
         calibration_ = calibration_seconds();
         out_ << "calibration loop: " << std::fixed << std::setprecision(3) << calibration_ << " CPU-s\n" << std::flush;
-        const std::vector<PlannedScene> plan = benchmark_plan(options_.quick);
         for (std::size_t i = 0; i < plan.size(); ++i) {
             out_ << "[" << i + 1 << "/" << plan.size() << "] " << to_string(plan[i].name) << "\n" << std::flush;
             if (const std::string reason = scenes_.why_not(plan[i].name); !reason.empty())
@@ -149,9 +148,14 @@ class Run {
 } // namespace
 
 int run_foliage_benchmark(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out) {
+    return run_foliage_benchmark(benchmark_plan(options.quick), options, progress, out);
+}
+
+int run_foliage_benchmark(const std::vector<PlannedScene>& plan, const FoliageBenchmarkOptions& options,
+                          Progress& progress, std::ostream& out) {
     if (options.threads > 0)
         set_thread_count(options.threads);
-    return Run(options, progress, out).execute();
+    return Run(options, progress, out).execute(plan);
 }
 
 } // namespace kokage

@@ -1,10 +1,12 @@
 #pragma once
 // `kokage bench foliage`: the methods of shading against path tracing, in time, memory and error.
 #include "common/services/progress.h"
+#include "tests/benchmark/benchmark_plan.h"
 
 #include <cstdint>
 #include <filesystem>
 #include <iosfwd>
+#include <vector>
 
 namespace kokage {
 
@@ -24,5 +26,9 @@ struct FoliageBenchmarkOptions {
 /// are replaced whole. `out` gets progress in words and the summary. Returns 0; 1 if a measurement failed (the others
 /// are still made).
 int run_foliage_benchmark(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out);
+
+/// The same with scenes and efforts of one's own (`options.quick` is not looked at).
+int run_foliage_benchmark(const std::vector<PlannedScene>& plan, const FoliageBenchmarkOptions& options,
+                          Progress& progress, std::ostream& out);
 
 } // namespace kokage
