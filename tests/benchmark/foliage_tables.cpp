@@ -17,6 +17,12 @@ std::string digits(std::optional<double> value, double scale = 1) {
     return text;
 }
 
+std::string plain(double value) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", value);
+    return text;
+}
+
 std::string row(const std::vector<std::string>& cells) {
     std::string text = "|";
     for (const std::string& cell : cells)
@@ -43,7 +49,7 @@ std::string record_table(const std::vector<FoliageRecord>& records) {
         row(std::vector<std::string>(15, "---"));
     for (const FoliageRecord& r : records)
         text += row({r.scene, std::to_string(r.leaves), r.material, std::string(method_name(r.method)),
-                     digits(r.effort) + " " + r.effort_kind, digits(r.cpu_seconds), digits(r.relight_cpu_seconds),
+                     plain(r.effort) + " " + r.effort_kind, digits(r.cpu_seconds), digits(r.relight_cpu_seconds),
                      digits(r.bytes_per_leaf), digits(r.accuracy.mre, 100), digits(r.accuracy.p95, 100),
                      digits(r.accuracy.rmse_over_mean, 100), digits(r.accuracy.bias, 100),
                      digits(r.estimated_error, 100), digits(r.reference_noise, 100), r.judged() ? "yes" : "no"});
