@@ -83,10 +83,11 @@ TEST(PathTraced, EstimatedErrorIsHonest) {
                      test::constant_environment({1, 2, 3})});
     cases.push_back({"masked", test::random_crown(150, 5, test::realistic_leaf()), test::sky_and_sun()});
     test::mask_rectangles(cases.back().scene, test::checkered_mask(4));
-    cases.push_back({"lamps inside", test::random_crown(150, 3.5f, test::bright_leaf()),
+    cases.push_back({"lamps beside", test::random_crown(150, 3.5f, test::bright_leaf()),
                      test::constant_environment(glm::vec3(0.1f))});
     for (int i = 0; i < 3; ++i)
-        cases.back().environment.point_lights.push_back({"", {0.2f * float(i), 2, 0.1f}, glm::vec3(1, 0.8f, 0.5f)});
+        cases.back().environment.point_lights.push_back(
+            {"", {1.3f, 1.5f + 0.5f * float(i), 0.1f}, glm::vec3(1, 0.8f, 0.5f)});
     for (const Case& c : cases) {
         std::vector<double> areas(c.scene.leaf_count, 1.0);
         const PathTracedReference reference = path_trace_reference(c.scene, c.environment, 4096, 77, silent_progress());
