@@ -78,7 +78,7 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
 /// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees. 0 for a black
 /// picture. Metered like a camera, the middle of the picture counting most: the geometric mean of luminance goes to
 /// middle grey (0.18) plus half a stop, because crowns are darker than a grey card; but the level that 93 % stay below
-/// becomes 1.2 at most, so that skies keep their colour. What is brighter than that level, or 4.5 stops darker
+/// becomes 1.4 at most, so that skies keep their colour. What is brighter than that level, or 4.5 stops darker
 /// (background, deep shade), is not in the mean.
 float automatic_exposure_stops(const Image& radiance);
 

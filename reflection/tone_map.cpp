@@ -9,9 +9,9 @@ namespace kokage {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-constexpr float kCompensation = 1.5f; ///< a crown is darker than a grey card: photographers open half a stop for it
+constexpr float kCompensation = 1.25f; ///< a crown is darker than a grey card: photographers open a third of a stop for it
 constexpr float kBrightShare = 0.93f; ///< of the metered picture that must stay below …
-constexpr float kHighlight = 1.2f;    ///< … what the curve shows as a light grey of 0.95
+constexpr float kHighlight = 1.4f;    ///< … what the curve shows as a light grey of 0.96
 constexpr double kDeepStops = 4.5;    ///< what is so much darker than that is background or deep shade: not metered
 constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
