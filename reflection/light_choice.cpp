@@ -12,6 +12,23 @@ constexpr std::size_t kFewLights = 2;
 /// Keeps the inverse square finite where a point light touches a surface.
 constexpr float kLeastSquaredDistance = 1e-20f;
 
+constexpr float kWide = 0.05f; ///< half angle; the sun's is 0.005
+constexpr std::uint32_t kWideFactor = 4;
+
+/// Directions that are near one another mostly have near numbers: the bits of both lat-long coordinates, interleaved
+/// (Morton 1966).
+std::uint32_t place_on_curve(const glm::vec3& direction) {
+    const glm::vec2 uv = lat_long_from_direction(direction);
+    auto spread = [](float x) {
+        auto bits = std::uint32_t(std::clamp(x, 0.f, 1.f) * 65535);
+        bits = (bits | bits << 8) & 0x00ff00ffu;
+        bits = (bits | bits << 4) & 0x0f0f0f0fu;
+        bits = (bits | bits << 2) & 0x33333333u;
+        return (bits | bits << 1) & 0x55555555u;
+    };
+    return spread(uv.x) | spread(uv.y) << 1;
+}
+
 float largest(const glm::vec3& rgb) {
     return std::max({rgb.r, rgb.g, rgb.b});
 }
@@ -19,34 +36,60 @@ float largest(const glm::vec3& rgb) {
 } // namespace
 
 LightChoice::LightChoice(const Environment& environment, int light_samples)
-    : environment_(environment), light_samples_(std::uint32_t(std::max(1, light_samples))),
-      light_count_(environment.distant_lights.size() + environment.point_lights.size()) {
+    : points_(environment.point_lights), light_samples_(std::uint32_t(std::max(1, light_samples))) {
     for (const DistantLight& light : environment.distant_lights)
-        sine_of_half_angle_.push_back(std::sin(std::min(light.half_angle, kPi / 2)));
+        distant_.push_back(prepare(light, light_samples_));
+}
+
+LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32_t light_samples) {
+    const bool wide = light.half_angle > kWide;
+    Distant result{light, std::sin(std::min(light.half_angle, kPi / 2)), (wide ? kWideFactor : 1) * light_samples, {}};
+    std::stable_sort(result.light.texels.begin(), result.light.texels.end(), [](const auto& a, const auto& b) {
+        return place_on_curve(a.direction) < place_on_curve(b.direction);
+    });
+    double total = 0;
+    for (const DistantLight::Texel& texel : result.light.texels)
+        result.shares.push_back(total += luminance(texel.irradiance));
+    for (double& share : result.shares) // a region that is black throughout contributes nothing, whatever is drawn
+        share = total > 0 ? share / total : 1;
+    return result;
+}
+
+/// As sample_light() does, but in logarithmic time, and along the curve.
+LightSample LightChoice::draw(const Distant& distant, glm::vec2 u) {
+    if (distant.shares.empty())
+        return sample_light(distant.light, u.x, u.y);
+    const auto found = std::upper_bound(distant.shares.begin(), distant.shares.end() - 1, double(u.x));
+    const double before = found == distant.shares.begin() ? 0 : found[-1], share = *found - before;
+    const DistantLight::Texel& texel = distant.light.texels[std::size_t(found - distant.shares.begin())];
+    if (!(share > 0)) // only the last, where rounding has eaten it
+        return {texel.direction, glm::vec3(0.f)};
+    const float rest = std::clamp(float((double(u.x) - before) / share), 0.f, 0x1.fffffep-1f);
+    return {sample_cone(texel.direction, texel.half_angle, rest, u.y), glm::vec3(glm::dvec3(texel.irradiance) / share)};
 }
 
 float LightChoice::contribution(std::size_t light, const glm::vec3& point, const Scattering& scattering) const {
-    if (light < environment_.distant_lights.size()) {
-        const DistantLight& distant = environment_.distant_lights[light];
+    if (light < distant_.size()) {
+        const Distant& distant = distant_[light];
         // A wide light can reach over the horizon of its mean direction: its probability must not be 0 there.
-        const glm::vec3 spill = sine_of_half_angle_[light] * (scattering.reflectance + scattering.transmittance) / kPi;
-        return largest(distant.irradiance * (scattering.towards(distant.direction) + spill));
+        const glm::vec3 spill = distant.sine_of_half_angle * (scattering.reflectance + scattering.transmittance) / kPi;
+        return largest(distant.light.irradiance * (scattering.towards(distant.light.direction) + spill));
     }
-    const PointLight& lamp = environment_.point_lights[light - environment_.distant_lights.size()];
+    const PointLight& lamp = points_[light - distant_.size()];
     const glm::vec3 offset = lamp.position - point;
     const float squared = std::max(glm::dot(offset, offset), kLeastSquaredDistance);
     return largest(lamp.intensity / squared * scattering.towards(offset / std::sqrt(squared)));
 }
 
 void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight,
-                          glm::vec2 u, std::vector<LightRay>& rays) const {
-    LightRay ray;
-    if (light < environment_.distant_lights.size()) {
-        const LightSample sample = sample_light(environment_.distant_lights[light], u.x, u.y);
+                          glm::vec2 u, std::vector<ShadowRay>& rays) const {
+    ShadowRay ray;
+    if (light < distant_.size()) {
+        const LightSample sample = draw(distant_[light], u);
         ray = {sample.direction, std::numeric_limits<float>::infinity(),
                weight * sample.irradiance_over_pdf * scattering.towards(sample.direction)};
     } else {
-        const PointLight& lamp = environment_.point_lights[light - environment_.distant_lights.size()];
+        const PointLight& lamp = points_[light - distant_.size()];
         const glm::vec3 offset = lamp.position - point;
         const float squared = std::max(glm::dot(offset, offset), kLeastSquaredDistance), distance = std::sqrt(squared);
         ray = {offset / distance, distance, weight * lamp.intensity / squared * scattering.towards(offset / distance)};
@@ -56,38 +99,46 @@ void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scatt
 }
 
 void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample,
-                          std::vector<LightRay>& rays, std::vector<float>& scratch) const {
+                          std::vector<ShadowRay>& rays, std::vector<float>& scratch) const {
     rays.clear();
-    if (light_count_ == 0 || largest(scattering.reflectance + scattering.transmittance) <= 0)
+    const std::size_t light_count = distant_.size() + points_.size();
+    if (light_count == 0 || largest(scattering.reflectance + scattering.transmittance) <= 0)
         return;
-    const std::uint32_t count = sample.count * light_samples_;
-    if (light_count_ <= kFewLights) {
-        for (std::size_t light = 0; light < light_count_; ++light)
-            for (std::uint32_t k = 0; k < light_samples_; ++k)
-                add_ray(light, point, scattering, 1.f / float(light_samples_),
-                        multi_jittered(sample.index * light_samples_ + k, count, sample.pattern + std::uint32_t(light)),
+    if (light_count <= kFewLights) {
+        for (std::size_t light = 0; light < light_count; ++light) {
+            const std::uint32_t count = light < distant_.size() ? distant_[light].rays : 1;
+            for (std::uint32_t k = 0; k < count; ++k)
+                add_ray(light, point, scattering, 1.f / float(count),
+                        multi_jittered(sample.index * count + k, sample.count * count,
+                                       sample.pattern + std::uint32_t(light)),
                         rays);
+        }
         return;
     }
-    scratch.resize(light_count_);
+    scratch.resize(light_count);
     double total = 0;
-    for (std::size_t light = 0; light < light_count_; ++light)
+    for (std::size_t light = 0; light < light_count; ++light)
         total += scratch[light] = std::min(contribution(light, point, scattering), 1e30f);
     if (total <= 0)
         return;
     // Systematic sampling: one random start, then equal steps through the running sum. A light with the share p of the
     // sum is chosen floor(p picks) or ceil(p picks) times, and each choice weighs 1 / (picks p).
-    const std::uint32_t picks = 2 * light_samples_;
+    std::uint32_t picks = 2 * light_samples_;
+    for (const Distant& light : distant_)
+        picks = std::max(picks, light.rays);
     const double start = stratified(sample.index, sample.count, sample.pattern ^ 0x5bd1e995u), step = total / picks;
     double sum = 0;
     std::uint32_t pick = 0;
-    for (std::size_t light = 0; light < light_count_ && pick < picks; ++light) {
-        sum += scratch[light];
-        while (pick < picks && (start + pick) * step < sum) {
+    for (std::size_t light = 0; light < light_count && pick < picks; ++light) {
+        // Where in a light's share a step falls is spread over the pixel's samples as evenly as the starts are: it
+        // also chooses the place on the light.
+        for (; pick < picks && (start + pick) * step < sum + double(scratch[light]); ++pick) {
+            const auto place = float(std::clamp(((start + pick) * step - sum) / double(scratch[light]), 0.0, 1.0));
+            const float across = multi_jittered(sample.index * picks + pick, sample.count * picks, sample.pattern).y;
             add_ray(light, point, scattering, float(step / double(scratch[light])),
-                    multi_jittered(sample.index * picks + pick, sample.count * picks, sample.pattern + 1), rays);
-            ++pick;
+                    {std::min(place, 0x1.fffffep-1f), across}, rays);
         }
+        sum += scratch[light];
     }
 }
 

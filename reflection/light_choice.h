@@ -22,7 +22,7 @@ struct Scattering {
 };
 
 /// One shadow ray to trace, and what arrives if it is free.
-struct LightRay {
+struct ShadowRay {
     glm::vec3 direction;
     float distance;     ///< infinite for distant lights
     glm::vec3 radiance; ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
@@ -36,24 +36,34 @@ struct SampleIndex {
 
 class LightChoice {
   public:
-    /// The environment must outlive it.
     LightChoice(const Environment& environment, int light_samples);
 
     /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most two lights, or 2 x
     /// light_samples chosen by systematic sampling of the lights' unshadowed contributions, so that strong lights are
     /// never missed and weak ones share. `scratch` is working space of the caller.
-    void rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<LightRay>& rays,
+    void rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<ShadowRay>& rays,
                  std::vector<float>& scratch) const;
 
   private:
+    /// A distant light, ready to be drawn from.
+    struct Distant {
+        /// Its texels in the order of a curve that fills the sky, so that stratified numbers choose texels that lie
+        /// apart.
+        DistantLight light;
+        float sine_of_half_angle;
+        std::uint32_t
+            rays; ///< shadow rays where all lights are tested: more for wide lights, as their penumbras are wide
+        std::vector<double> shares; ///< cumulative share of the luminance, last = 1; empty for a disc
+    };
+    static Distant prepare(const DistantLight& light, std::uint32_t light_samples);
+    static LightSample draw(const Distant& light, glm::vec2 u);
     float contribution(std::size_t light, const glm::vec3& point, const Scattering& scattering) const;
     void add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight, glm::vec2 u,
-                 std::vector<LightRay>& rays) const;
+                 std::vector<ShadowRay>& rays) const;
 
-    const Environment& environment_;
+    std::vector<Distant> distant_;
+    std::vector<PointLight> points_;
     std::uint32_t light_samples_;
-    std::size_t light_count_; ///< distant lights first, then point lights
-    std::vector<float> sine_of_half_angle_;
 };
 
 } // namespace kokage

@@ -77,8 +77,9 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
 
 /// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees. 0 for a black
 /// picture. Metered like a camera, the middle of the picture counting most: the geometric mean of luminance goes to
-/// middle grey (0.18) plus half a stop, because crowns are darker than a grey card; but the level that 93 % stay below
-/// becomes 1.4 at most, so that skies keep their colour. What is brighter than that level, or 4.5 stops darker
+/// middle grey (0.18) plus a quarter of a stop, because crowns are darker than a grey card. Where that would take the
+/// level that 93 % stay below beyond 1.1, only 0.35 of the excess (in stops) is given, so that skies keep their colour
+/// and trees against the light don't become silhouettes. What is brighter than that level, or 4.5 stops darker
 /// (background, deep shade), is not in the mean.
 float automatic_exposure_stops(const Image& radiance);
 

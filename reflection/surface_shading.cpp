@@ -62,7 +62,7 @@ glm::vec3 light_from_lights(const LightChoice& lights, const RayQueries& queries
     lights.rays_at(point, scattering, sample, scratch.rays, scratch.weights);
     const float near = queries.ray_offset();
     glm::vec3 sum(0.f);
-    for (const LightRay& ray : scratch.rays)
+    for (const ShadowRay& ray : scratch.rays)
         if (!queries.occluded(point, ray.direction, near, ray.distance))
             sum += ray.radiance;
     return sum;

@@ -11,7 +11,7 @@ namespace kokage {
 
 /// Working space of one thread.
 struct ShadingScratch {
-    std::vector<LightRay> rays;
+    std::vector<ShadowRay> rays;
     std::vector<float> weights;
 };
 

@@ -9,10 +9,13 @@ namespace kokage {
 namespace {
 
 constexpr float kMiddleGrey = 0.18f;
-constexpr float kCompensation = 1.25f; ///< a crown is darker than a grey card: photographers open a third of a stop for it
+constexpr float kCompensation =
+    1.2f; ///< a crown is darker than a grey card: photographers open a quarter of a stop for it
 constexpr float kBrightShare = 0.93f; ///< of the metered picture that must stay below …
-constexpr float kHighlight = 1.4f;    ///< … what the curve shows as a light grey of 0.96
-constexpr double kDeepStops = 4.5;    ///< what is so much darker than that is background or deep shade: not metered
+constexpr float kHighlight = 1.1f;    ///< … what the curve shows as a light grey of 0.93
+constexpr double kYield =
+    0.35; ///< against the light, what is bright gives way by this share, so that the rest is no silhouette
+constexpr double kDeepStops = 4.5; ///< what is so much darker than that is background or deep shade: not metered
 constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
 void check_channels(const Image& image) {
@@ -84,8 +87,9 @@ float automatic_exposure_stops(const Image& radiance) {
         sum += double(pixel.weight) * stops;
         counted += double(pixel.weight);
     }
-    return float(std::min(std::log2(double(kMiddleGrey * kCompensation)) - sum / counted,
-                          std::log2(double(kHighlight)) - bright));
+    const double for_mean = std::log2(double(kMiddleGrey * kCompensation)) - sum / counted;
+    const double for_bright = std::log2(double(kHighlight)) - bright;
+    return float(for_mean <= for_bright ? for_mean : for_bright + kYield * (for_mean - for_bright));
 }
 
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops) {

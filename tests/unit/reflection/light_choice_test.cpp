@@ -36,7 +36,7 @@ glm::vec3 all_lights(const Environment& environment, const glm::vec3& point) {
 glm::dvec3 mean_of_choices(const Environment& environment, int light_samples, std::uint32_t pixels,
                            std::size_t& rays_traced) {
     const LightChoice choice(environment, light_samples);
-    std::vector<LightRay> rays;
+    std::vector<ShadowRay> rays;
     std::vector<float> scratch;
     glm::dvec3 sum(0.0);
     rays_traced = 0;
@@ -44,7 +44,7 @@ glm::dvec3 mean_of_choices(const Environment& environment, int light_samples, st
         for (std::uint32_t s = 0; s < 16; ++s) {
             choice.rays_at({0, 0, 0}, kLeaf, {s, 16, std::uint32_t(hash64(p))}, rays, scratch);
             rays_traced += rays.size();
-            for (const LightRay& ray : rays)
+            for (const ShadowRay& ray : rays)
                 sum += glm::dvec3(ray.radiance) / (16.0 * pixels);
         }
     return sum;
@@ -73,19 +73,19 @@ TEST(LightChoice, AStrongLightAmongWeakOnesIsNeverMissed) {
     Environment environment = many_lights(30);
     environment.distant_lights[11] = disc_light({0, 1, 0}, 0.f, glm::vec3(1e4f));
     const LightChoice choice(environment, 1);
-    std::vector<LightRay> rays;
+    std::vector<ShadowRay> rays;
     std::vector<float> scratch;
     for (std::uint32_t p = 0; p < 500; ++p) {
         choice.rays_at({0, 0, 0}, kLeaf, {p % 16, 16, std::uint32_t(hash64(p))}, rays, scratch);
         glm::vec3 sum(0.f);
-        for (const LightRay& ray : rays)
+        for (const ShadowRay& ray : rays)
             sum += ray.radiance;
         EXPECT_NEAR(sum.g / (1e4f * 0.3f / kPi), 1, 0.01);
     }
 }
 
 TEST(LightChoice, NoLightAndNoScatteringGiveNoRays) {
-    std::vector<LightRay> rays(3);
+    std::vector<ShadowRay> rays(3);
     std::vector<float> scratch;
     const Environment dark = constant_environment(glm::vec3(0.f));
     LightChoice(dark, 1).rays_at({0, 0, 0}, kLeaf, {}, rays, scratch);
