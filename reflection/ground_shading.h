@@ -1,6 +1,6 @@
 #pragma once
 // The radiance of the ground under a scene, where a camera ray meets it.
-#include "reflection/ground_light.h"
+#include "reflection/ground_sky_light.h"
 #include "reflection/surface_shading.h"
 
 #include <optional>
@@ -35,7 +35,7 @@ class GroundShading {
     const LightChoice& lights_;
     std::optional<float> height_;
     std::optional<glm::vec3> albedo_; ///< empty: the backdrop is the ground, and takes shadows
-    std::optional<GroundLight> light_;
+    std::optional<GroundSkyLight> light_;
     glm::vec3 backdrop_irradiance_{0.f}; ///< upwards, open: what lit the ground that the backdrop shows
     glm::vec2 centre_{0.f};
     float scene_radius_ = 1, haze_distance_ = 1, pixel_angle_ = 0.001f;

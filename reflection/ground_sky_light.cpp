@@ -1,4 +1,4 @@
-#include "reflection/ground_light.h"
+#include "reflection/ground_sky_light.h"
 #include "common/services/parallel.h"
 #include "reflection/sampling.h"
 
@@ -38,16 +38,16 @@ glm::vec2 standing_place(const PatchScene& patches, const Bounds& bounds) {
 
 } // namespace
 
-float GroundLight::Level::weight(const glm::vec2& place) const {
+float GroundSkyLight::Level::weight(const glm::vec2& place) const {
     const glm::vec2 offset = glm::abs(place - centre);
     return smooth_step((1 - std::max(offset.x, offset.y) / half_width) / kBlend);
 }
 
-glm::vec2 GroundLight::Level::node_place(int column, int row) const {
+glm::vec2 GroundSkyLight::Level::node_place(int column, int row) const {
     return centre + half_width * (2.f * glm::vec2(column, row) / float(kNodes - 1) - 1.f);
 }
 
-glm::vec3 GroundLight::Level::interpolated(const glm::vec2& place) const {
+glm::vec3 GroundSkyLight::Level::interpolated(const glm::vec2& place) const {
     const glm::vec2 grid = ((place - centre) / half_width * 0.5f + 0.5f) * float(kNodes - 1);
     const int column = int(std::floor(grid.x)), row = int(std::floor(grid.y));
     const glm::vec4 wx = cubic_b_spline(grid.x - float(column)), wz = cubic_b_spline(grid.y - float(row));
@@ -60,8 +60,8 @@ glm::vec3 GroundLight::Level::interpolated(const glm::vec2& place) const {
     return sum;
 }
 
-GroundLight::GroundLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop, float height,
-                         Progress& progress) {
+GroundSkyLight::GroundSkyLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop,
+                               float height, Progress& progress) {
     glm::dvec3 open(0.0);
     for (std::uint32_t k = 0; k < kOpenDirections; ++k)
         open += glm::dvec3(backdrop.remainder(cosine_direction(multi_jittered(k, kOpenDirections, kPattern))));
@@ -72,7 +72,7 @@ GroundLight::GroundLight(const ShadedScene& scene, const RayQueries& queries, co
     gather(scene, queries, backdrop, height, progress);
 }
 
-void GroundLight::place_levels(const PatchScene& patches) {
+void GroundSkyLight::place_levels(const PatchScene& patches) {
     const Bounds bounds = bounds_of(patches);
     const glm::vec3 half = 0.5f * (bounds.high - bounds.low);
     const float radius = std::max({half.x, half.z, 0.5f * half.y, std::numeric_limits<float>::min() * 1e6f});
@@ -85,7 +85,7 @@ void GroundLight::place_levels(const PatchScene& patches) {
 }
 
 /// True if a finer grid is all that is seen wherever this node has a share (two cells around it, by the B-spline).
-bool GroundLight::hidden_by_finer(std::size_t level, int column, int row) const {
+bool GroundSkyLight::hidden_by_finer(std::size_t level, int column, int row) const {
     if (level + 1 == levels_.size())
         return false;
     const Level& finer = levels_[level + 1];
@@ -94,8 +94,8 @@ bool GroundLight::hidden_by_finer(std::size_t level, int column, int row) const 
     return std::max(offset.x, offset.y) < (1 - kBlend) * finer.half_width;
 }
 
-void GroundLight::gather(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop, float height,
-                         Progress& progress) {
+void GroundSkyLight::gather(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop, float height,
+                            Progress& progress) {
     std::vector<glm::vec3> directions(kDirections), sky(kDirections);
     for (std::uint32_t k = 0; k < kDirections; ++k) {
         directions[k] = cosine_direction(multi_jittered(k, kDirections, kPattern));
@@ -136,7 +136,7 @@ void GroundLight::gather(const ShadedScene& scene, const RayQueries& queries, co
     });
 }
 
-glm::vec3 GroundLight::irradiance(float x, float z) const {
+glm::vec3 GroundSkyLight::irradiance(float x, float z) const {
     const glm::vec2 place(x, z);
     glm::vec3 change(0.f);
     float open = 1; // share that is not covered by a finer grid yet

@@ -1,6 +1,6 @@
 #include "picture_scenes.h"
-#include "reflection/ground_light.h"
 #include "reflection/ground_shading.h"
+#include "reflection/ground_sky_light.h"
 #include "reflection/sampling.h"
 
 #include <gtest/gtest.h>
@@ -40,13 +40,13 @@ Environment gradient_environment() {
     return environment;
 }
 
-TEST(GroundLight, AgreesWithBruteForceUnderACrown) {
+TEST(GroundSkyLight, AgreesWithBruteForceUnderACrown) {
     const PatchScene patches = random_crown(3000, 4, Optics{});
     const ShadedScene scene = evenly_shaded(patches, {0.05f, 0.2f, 0.02f});
     const RayQueries queries(patches);
     const Environment environment = gradient_environment();
     const Backdrop backdrop(environment);
-    const GroundLight light(scene, queries, backdrop, 0.f, silent_progress());
+    const GroundSkyLight light(scene, queries, backdrop, 0.f, silent_progress());
     for (const glm::vec2& place : {glm::vec2(0, 0), glm::vec2(0.3f, -0.2f), glm::vec2(1, 1), glm::vec2(-2, 0.5f),
                                    glm::vec2(4, -3), glm::vec2(9, 9)}) {
         const glm::vec3 truth = brute_force(scene, queries, backdrop, {place.x, 0, place.y}),
@@ -56,24 +56,24 @@ TEST(GroundLight, AgreesWithBruteForceUnderACrown) {
     }
 }
 
-TEST(GroundLight, OpenSkyIsTheIntegralOfTheSky) {
+TEST(GroundSkyLight, OpenSkyIsTheIntegralOfTheSky) {
     const PatchScene patches;
     const RayQueries queries(patches);
     const Environment environment = gradient_environment();
     const Backdrop backdrop(environment);
-    const GroundLight light(evenly_shaded(patches, glm::vec3(0.f)), queries, backdrop, 0.f, silent_progress());
+    const GroundSkyLight light(evenly_shaded(patches, glm::vec3(0.f)), queries, backdrop, 0.f, silent_progress());
     // Of 1 + y/2 over the upper hemisphere: π + π/3. Of 1 + x/2: π.
     EXPECT_NEAR(light.open_irradiance().g, kPi + kPi / 3, 0.005f);
     EXPECT_NEAR(light.open_irradiance().r, kPi, 0.005f);
     EXPECT_EQ(light.irradiance(3, 4), light.open_irradiance());
 }
 
-TEST(GroundLight, HasNoStepsWhereGridsMeet) {
+TEST(GroundSkyLight, HasNoStepsWhereGridsMeet) {
     const PatchScene patches = random_crown(2000, 4, Optics{});
     const RayQueries queries(patches);
     const Environment environment = constant_environment(glm::vec3(1.f));
     const Backdrop backdrop(environment);
-    const GroundLight light(evenly_shaded(patches, glm::vec3(0.f)), queries, backdrop, 0.f, silent_progress());
+    const GroundSkyLight light(evenly_shaded(patches, glm::vec3(0.f)), queries, backdrop, 0.f, silent_progress());
     float before = light.irradiance(0.1f, 0.05f).g;
     for (float x = 0.1f; x < 12; x += 0.01f) {
         const float now = light.irradiance(x, 0.5f * x).g;

@@ -20,10 +20,10 @@ namespace kokage {
 /// Every node holds E(node) - E(open sky): rays that reach the sky have no part in it, so it has no noise far from the
 /// scene. All nodes share one set of cosine-distributed directions, so what error there is varies as smoothly as the
 /// shadow itself.
-class GroundLight {
+class GroundSkyLight {
   public:
-    GroundLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop, float height,
-                Progress& progress);
+    GroundSkyLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop, float height,
+                   Progress& progress);
 
     /// In radiance x sr, at a place of the plane; never negative.
     glm::vec3 irradiance(float x, float z) const;
