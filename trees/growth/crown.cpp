@@ -19,8 +19,9 @@ Crown::Crown(const GrowthParameters& p)
     : lobe_depth_(float(p.crown_lobe_depth)), roundness_(float(p.crown_roundness)), shell_(float(p.crown_shell)),
       clumping_(float(p.crown_clumping)), seed_(p.seed) {
     const double projection = p.leaves * mean_leaf_area(p) / p.leaf_area_index;
-    // The hollows between billows take more of the crown's projection than shoots beyond the outline add: measured over seeds, the
-    // crown that grows has 0.92 times the projection of its nominal outline. A seedling is never smaller than its leaves.
+    // The hollows between billows take more of the crown's projection than shoots beyond the outline add: measured over
+    // seeds, the crown that grows has 0.92 times the projection of its nominal outline. A seedling is never smaller
+    // than its leaves.
     constexpr double grown_share = 0.92;
     const double smallest = 0.8 * (p.leaf_length + p.shoot_length);
     radius_m = float(std::max(std::sqrt(projection / (grown_share * kPiDouble)), smallest));
@@ -37,6 +38,7 @@ Crown::Crown(const GrowthParameters& p)
                     r = std::sqrt(std::max(0.f, 1 - y * y));
         lobes_.push_back({{r * std::cos(azimuth), y, r * std::sin(azimuth)}, random.uniform(0.45f, 1.f)});
     }
+    base_phases_ = {random.uniform(0.f, 2 * kPi), random.uniform(0.f, 2 * kPi), random.uniform(0.f, 2 * kPi)};
     // A lobe's angular half-width is about half the distance to its neighbours.
     lobe_sharpness_ = float(p.crown_lobes) / 5.f;
 }
@@ -44,6 +46,14 @@ Crown::Crown(const GrowthParameters& p)
 glm::vec3 Crown::normalised(const glm::vec3& point) const {
     const float y = point.y - widest_m;
     return {point.x / radius_m, y / (y >= 0 ? height_m - widest_m : lower_depth_m_), point.z / radius_m};
+}
+
+/// Height of the crown's base in a point's direction from the trunk: it rises and sinks a little around the tree.
+float Crown::base_towards(const glm::vec3& point) const {
+    const float azimuth = std::atan2(point.z, point.x);
+    const float wave = std::cos(2 * azimuth + base_phases_.x) + std::cos(3 * azimuth + base_phases_.y) +
+                       std::cos(5 * azimuth + base_phases_.z);
+    return base_m + 0.11f * (widest_m - base_m) * wave;
 }
 
 float Crown::lobe_scale(const glm::vec3& direction) const {
@@ -67,15 +77,16 @@ float Crown::relative_distance(const glm::vec3& point) const {
 
 Crown::Attractors Crown::attractors(int count) const {
     Random random(seed_, streams::attractors);
+    const float lowest = base_m - 0.33f * (widest_m - base_m);
     const auto point_in_box = [&] {
-        return glm::vec3(random.uniform(-radius_m, radius_m), random.uniform(base_m, height_m),
+        return glm::vec3(random.uniform(-radius_m, radius_m), random.uniform(lowest, height_m),
                          random.uniform(-radius_m, radius_m));
     };
     // The crown's edge belongs to it: shoots and leaves grow a little beyond the points, so the points stay a little
     // inside.
     const auto density = [&](const glm::vec3& point) {
         const float distance = relative_distance(point);
-        return distance > 1 ? 0.f : 0.04f + 0.96f * std::pow(distance, shell_);
+        return distance > 1 || point.y < base_towards(point) ? 0.f : 0.04f + 0.96f * std::pow(distance, shell_);
     };
     Attractors result;
     std::vector<glm::vec3> clumps;
@@ -89,13 +100,13 @@ Crown::Attractors Crown::attractors(int count) const {
     };
     draw(result.points, std::size_t(std::lround(double(count) * (1 - clumping_))));
     draw(clumps, clump_count);
-    const float box = 4 * radius_m * radius_m * (height_m - base_m);
+    const float box = 4 * radius_m * radius_m * (height_m - lowest);
     const float clump_radius = 0.5f * std::cbrt(box / float(clump_count) * 0.35f);
     while (result.points.size() < std::size_t(count) && !clumps.empty() && tried++ < 2 * most) {
         const glm::vec3 centre = clumps[random.below(std::uint32_t(clumps.size()))];
         const glm::vec3 offset{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
         const glm::vec3 p = centre + clump_radius * glm::vec3(offset.x, 0.7f * offset.y, offset.z);
-        if (glm::length(offset) < 1 && p.y >= base_m && relative_distance(p) < 1.03f)
+        if (glm::length(offset) < 1 && p.y >= base_towards(p) && relative_distance(p) < 1.03f)
             result.points.push_back(p);
     }
     while (result.points.size() < std::size_t(count)) // a crown too thin to hit by chance

@@ -34,6 +34,7 @@ class Crown {
 
   private:
     glm::vec3 normalised(const glm::vec3& point) const;
+    float base_towards(const glm::vec3& point) const;
     float lobe_scale(const glm::vec3& direction) const;
 
     struct Lobe {
@@ -41,6 +42,7 @@ class Crown {
         float size;
     };
     std::vector<Lobe> lobes_;
+    glm::vec3 base_phases_{0.f};
     float lobe_sharpness_ = 1, lobe_depth_ = 0, roundness_ = 2, lower_depth_m_ = 1, shell_ = 0, clumping_ = 0;
     std::uint64_t seed_;
 };

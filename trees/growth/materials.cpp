@@ -5,13 +5,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <mutex>
+#include <tuple>
 
 namespace kokage {
 namespace {
 
-/// Mean reflectance and transmittance of an oak leaf in the three channels: green light 13 % and 13 %, red and blue far
+/// Mean reflectance and transmittance of an oak leaf in the three channels: green light 12 % and 10 %, red and blue far
 /// less. About what leaf spectra give (Hosgood et al. 1995, LOPEX), in linear Rec.709.
-constexpr glm::vec3 leaf_reflectance{0.075f, 0.135f, 0.032f}, leaf_transmittance{0.075f, 0.140f, 0.018f};
+constexpr glm::vec3 leaf_reflectance{0.070f, 0.118f, 0.034f}, leaf_transmittance{0.056f, 0.100f, 0.018f};
 constexpr glm::vec3 bark_albedo{0.150f, 0.130f, 0.110f};
 
 /// Value noise on a lattice that repeats after `period` cells, in 0..1.
@@ -47,7 +50,7 @@ void set_mean(Image& image, const Image* weight, const glm::vec3& mean) {
 
 constexpr int leaf_size = 128, bark_size = 256;
 
-std::shared_ptr<Image> leaf_alpha() {
+std::shared_ptr<const Image> leaf_alpha(const glm::vec3&) {
     auto alpha = std::make_shared<Image>(leaf_size, leaf_size, 1);
     for (int y = 0; y < leaf_size; ++y)
         for (int x = 0; x < leaf_size; ++x) {
@@ -61,7 +64,7 @@ std::shared_ptr<Image> leaf_alpha() {
 }
 
 /// Green with a paler midrib and side veins that run into the lobes, and a little mottling.
-std::shared_ptr<Image> leaf_color(const Image& alpha, const glm::vec3& mean) {
+std::shared_ptr<const Image> leaf_color(const glm::vec3& mean) {
     auto image = std::make_shared<Image>(leaf_size, leaf_size, 3);
     for (int py = 0; py < leaf_size; ++py)
         for (int px = 0; px < leaf_size; ++px) {
@@ -77,12 +80,12 @@ std::shared_ptr<Image> leaf_color(const Image& alpha, const glm::vec3& mean) {
             for (std::size_t c = 0; c < 3; ++c)
                 image->at(px, py)[c] = color[c];
         }
-    set_mean(*image, &alpha, mean);
+    set_mean(*image, leaf_alpha({}).get(), mean);
     return image;
 }
 
 /// Grey ridges between dark fissures that run along the branch (v) and split and join, as old oak bark does.
-std::shared_ptr<Image> bark_color(const glm::vec3& mean) {
+std::shared_ptr<const Image> bark_color(const glm::vec3& mean) {
     auto image = std::make_shared<Image>(bark_size, bark_size, 3);
     for (int y = 0; y < bark_size; ++y)
         for (int x = 0; x < bark_size; ++x) {
@@ -104,6 +107,18 @@ std::shared_ptr<Image> bark_color(const glm::vec3& mean) {
     return image;
 }
 
+/// Textures of the same mean colour are the same: they are drawn once.
+using Drawing = std::shared_ptr<const Image> (*)(const glm::vec3&);
+std::shared_ptr<const Image> drawn_once(Drawing draw, const glm::vec3& mean) {
+    static std::mutex mutex;
+    static std::map<std::tuple<Drawing, float, float, float>, std::shared_ptr<const Image>> drawn;
+    const std::lock_guard lock(mutex);
+    std::shared_ptr<const Image>& image = drawn[{draw, mean.r, mean.g, mean.b}];
+    if (!image)
+        image = draw(mean);
+    return image;
+}
+
 } // namespace
 
 TreeMaterial leaf_material(const GrowthParameters& p) {
@@ -116,14 +131,10 @@ TreeMaterial leaf_material(const GrowthParameters& p) {
     material.base_color = leaf_reflectance / (1 - f);
     material.roughness = 0.6f;
     material.wrap_u = material.wrap_v = TextureWrap::clamp;
-    const bool cards = p.leaf_form == LeafForm::alpha;
-    if (!cards && !p.textures)
-        return material;
-    const std::shared_ptr<Image> alpha = leaf_alpha();
-    if (cards)
-        material.alpha_texture = alpha;
+    if (p.leaf_form == LeafForm::alpha)
+        material.alpha_texture = drawn_once(leaf_alpha, glm::vec3(0.f));
     if (p.textures) {
-        material.base_color_texture = leaf_color(*alpha, material.base_color);
+        material.base_color_texture = drawn_once(leaf_color, material.base_color);
         material.base_color = glm::vec3(1.f);
     }
     return material;
@@ -136,7 +147,7 @@ TreeMaterial bark_material(const GrowthParameters& p) {
     material.roughness = 0.95f;
     material.base_color = bark_albedo;
     if (p.textures) {
-        material.base_color_texture = bark_color(bark_albedo);
+        material.base_color_texture = drawn_once(bark_color, bark_albedo);
         material.base_color = glm::vec3(1.f);
     }
     return material;

@@ -21,10 +21,10 @@ struct GrowthParameters {
     double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.4;
     LeafForm leaf_form = LeafForm::outline;
     int leaf_detail = 1;
-    double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0021, shoot_angle = 48;
+    double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0024, shoot_angle = 48;
 
     double leaf_area_index = 4.5, height_to_width = 0.84;
-    double crown_base = 0.2, crown_widest = 0.36, crown_bottom = 0.76, crown_roundness = 2.0;
+    double crown_base = 0.22, crown_widest = 0.36, crown_bottom = 0.76, crown_roundness = 2.0;
     int crown_lobes = 20;
     double crown_lobe_depth = 0.2, crown_shell = 2.5, crown_clumping = 0.2;
 

@@ -141,7 +141,7 @@ TEST(Growth, TheOakHasAnOaksProportions) {
         EXPECT_GT(crown.mean_inclination_degrees, 25);
         EXPECT_LT(crown.mean_inclination_degrees, 50);
         const double ratio = crown.width / (2 * tree.skeleton.branches[0].nodes[0].radius_m);
-        EXPECT_GT(ratio, 18);
+        EXPECT_GT(ratio, 16);
         EXPECT_LT(ratio, 27);
         int limbs = 0;
         for (const Branch& branch : tree.skeleton.branches)
