@@ -32,7 +32,8 @@ glm::vec3 from_openmesh(const OpenMesh::Vec3f& v) {
 struct TubeFace {
     std::array<Mesh::VertexHandle, 3> corners;
     std::array<float, 3> around, along; ///< texture coordinates
-    std::uint32_t segment;
+    std::uint32_t segment;              ///< between ring `segment` and the next
+    bool is_foot;                       ///< closes the lower end
     float middle_around;
 };
 
@@ -149,12 +150,13 @@ class TubeBuilder {
     }
 
     void add_face(std::array<Mesh::VertexHandle, 3> corners, std::array<float, 3> around, std::array<float, 3> along,
-                  std::uint32_t segment) {
+                  std::uint32_t segment, bool is_foot = false) {
         if (!mesh_.add_face(corners[0], corners[1], corners[2]).is_valid())
             throw std::logic_error("bark: a branch's faces do not form a manifold");
         for (float& a : around)
             a *= float(tiles_);
-        faces_.push_back({corners, around, along, segment, (around[0] + around[1] + around[2]) / (3 * float(tiles_))});
+        faces_.push_back(
+            {corners, around, along, segment, is_foot, (around[0] + around[1] + around[2]) / (3 * float(tiles_))});
     }
 
     /// Closes the lower end (inside the parent, or on the ground) with a fan that looks back along the branch.
@@ -163,7 +165,7 @@ class TubeBuilder {
         for (std::size_t k = 1; k + 1 < ring.size(); ++k) {
             const float n = float(ring.size());
             add_face({ring[0], ring[k + 1], ring[k]}, {0, float(k + 1) / n, float(k) / n},
-                     {along_[0], along_[0], along_[0]}, 0);
+                     {along_[0], along_[0], along_[0]}, 0, true);
         }
     }
 
@@ -197,6 +199,8 @@ class TubeBuilder {
     }
 
     /// Cuts the tube into patches about as long as they are wide: sectors around thick wood, whole rounds of thin wood.
+    /// What no light reaches (the foot of thick wood, and all up to the parent's surface) is a patch of its own, so
+    /// that it does not darken the mean of what can be seen.
     void sort_into_patches(BarkPiece& piece) {
         const int sides = rings_[0].sides;
         const int sectors = sides <= 4 ? 1 : sides <= 7 ? 3 : sides / 2;
@@ -211,8 +215,11 @@ class TubeBuilder {
             }
             group[i] = current;
         }
+        const std::uint32_t first_lit_segment = rings_[1].on_parent ? 1 : 0;
         const auto key = [&](const TubeFace& face) {
-            return group[face.segment] * std::uint32_t(sectors) +
+            if (sides > 4 && (face.is_foot || face.segment < first_lit_segment))
+                return 0u;
+            return 1 + group[face.segment] * std::uint32_t(sectors) +
                    std::min(std::uint32_t(face.middle_around * float(sectors)), std::uint32_t(sectors - 1));
         };
         std::stable_sort(faces_.begin(), faces_.end(),

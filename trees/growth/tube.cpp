@@ -65,7 +65,8 @@ std::vector<Point> centre_line(const std::vector<Branch::Node>& nodes) {
         const Point &a = points[i == 0 ? 0 : i - 1], &b = points[i], &c = points[i + 1],
                     &d = points[std::min(i + 2, points.size() - 1)];
         const float length = glm::distance(b.position, c.position);
-        const int pieces = std::clamp(int(length / (5 * std::max(b.radius, 0.012f))), 1, 6);
+        const float spacing = (b.radius > 0.05f ? 2.5f : 5.f) * std::max(b.radius, 0.012f);
+        const int pieces = std::clamp(int(length / spacing), 1, 8);
         for (int k = 0; k < (b.radius > 0.01f ? pieces : 1); ++k) {
             const float t = float(k) / float(pieces);
             line.push_back(
