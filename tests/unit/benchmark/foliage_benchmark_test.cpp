@@ -1,5 +1,5 @@
-#include "tests/benchmark/foliage_benchmark.h"
 #include "common/services/error.h"
+#include "tests/benchmark/foliage_benchmark.h"
 
 #include <fstream>
 #include <gtest/gtest.h>
