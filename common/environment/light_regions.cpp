@@ -84,6 +84,8 @@ void join_with_row(UnionFind& sets, const std::vector<PixelRun>& runs, std::size
                    std::size_t end, int reach, int width) {
     for (const int shift : {-width, 0, width}) {
         const int low = runs[run].begin - reach + shift, high = runs[run].end - 1 + reach + shift;
+        if (high < 0 || low >= width)
+            continue;
         auto first = std::partition_point(runs.begin() + std::ptrdiff_t(begin), runs.begin() + std::ptrdiff_t(end),
                                           [&](const PixelRun& other) { return other.end - 1 < low; });
         for (; first != runs.begin() + std::ptrdiff_t(end) && first->begin <= high; ++first)
@@ -164,6 +166,14 @@ std::vector<LightRegion> connect_regions(const Image& image, const std::vector<P
         region.excess += sum * pixel_solid_angle(runs[i].y, image.width, image.height);
     }
     return regions;
+}
+
+double least_brightness(const Image& image, const LightRegion& region) {
+    double least = INFINITY;
+    for (const PixelRun& run : region.runs)
+        for (int x = run.begin; x < run.end; ++x)
+            least = std::min(least, brightness(image.at(x, run.y)));
+    return least;
 }
 
 double cone_degrees(const Image& image, const LightRegion& region) {

@@ -35,6 +35,8 @@ std::vector<PixelRun> brighter_runs(const Image& image, const std::vector<PixelR
 std::vector<LightRegion> connect_regions(const Image& image, const std::vector<PixelRun>& runs, double background,
                                          double gap_degrees);
 
+double least_brightness(const Image& image, const LightRegion& region);
+
 /// Half angle in degrees of the cone around the region's mean direction, weighted by its light, that holds all its
 /// pixels' centres.
 double cone_degrees(const Image& image, const LightRegion& region);

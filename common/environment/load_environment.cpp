@@ -25,30 +25,49 @@ std::string place(int x, int y) {
     return "pixel (" + std::to_string(x) + ", " + std::to_string(y) + ")";
 }
 
-/// Mean of the good values of one channel on the smallest square ring around a pixel that has any; wraps in u, ends at
-/// the poles.
-float mean_of_nearest_good(const Image& image, int x, int y, int channel) {
-    for (int radius = 1; radius < std::max(image.width, image.height); ++radius) {
-        double sum = 0;
-        int count = 0;
-        for (int dy = -radius; dy <= radius; ++dy) {
-            if (y + dy < 0 || y + dy >= image.height)
-                continue;
-            const int step =
-                std::abs(dy) == radius ? 1 : 2 * radius; // whole rows at the ring's top and bottom, else its two sides
-            for (int dx = -radius; dx <= radius; dx += step) {
-                const int column = (((x + dx) % image.width) + image.width) % image.width;
-                const float value = image.at(column, y + dy)[channel];
-                if (fault_of(value) == Fault::none) {
-                    sum += double(value);
-                    ++count;
-                }
-            }
+/// One channel's bad values of a kind, filled layer by layer: a pixel next to good ones (8 neighbours, wrapping in u)
+/// takes their mean and counts as good for the next layer.
+void fill_inwards(Image& image, int channel, std::vector<std::pair<int, int>> holes) {
+    std::vector<bool> is_hole(std::size_t(image.width) * std::size_t(image.height));
+    auto hole = [&](int x, int y) { return is_hole[std::size_t(y) * std::size_t(image.width) + std::size_t(x)]; };
+    for (const auto& [x, y] : holes)
+        is_hole[std::size_t(y) * std::size_t(image.width) + std::size_t(x)] = true;
+    auto for_neighbours = [&](int x, int y, auto&& visit) {
+        for (int dy = -1; dy <= 1; ++dy)
+            for (int dx = -1; dx <= 1; ++dx)
+                if (const int nx = (x + dx + image.width) % image.width, ny = y + dy;
+                    ny >= 0 && ny < image.height && (dx != 0 || dy != 0))
+                    visit(nx, ny);
+    };
+    // Holes in reach of the last layer; at first all of them.
+    while (!holes.empty()) {
+        std::vector<std::pair<std::pair<int, int>, float>> layer;
+        for (const auto& [x, y] : holes) {
+            double sum = 0;
+            int count = 0;
+            if (hole(x, y))
+                for_neighbours(x, y, [&](int nx, int ny) {
+                    if (!hole(nx, ny)) {
+                        sum += double(image.at(nx, ny)[channel]);
+                        ++count;
+                    }
+                });
+            if (count > 0)
+                layer.push_back({{x, y}, float(sum / count)});
         }
-        if (count > 0)
-            return float(sum / count);
+        holes.clear();
+        for (const auto& [at, value] : layer) {
+            image.at(at.first, at.second)[channel] = value;
+            is_hole[std::size_t(at.second) * std::size_t(image.width) + std::size_t(at.first)] = false;
+        }
+        for (const auto& [at, value] : layer)
+            for_neighbours(at.first, at.second, [&](int nx, int ny) {
+                if (hole(nx, ny))
+                    holes.emplace_back(nx, ny);
+            });
+        std::sort(holes.begin(), holes.end());
+        holes.erase(std::unique(holes.begin(), holes.end()), holes.end());
     }
-    return 0;
 }
 
 } // namespace
@@ -90,19 +109,19 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
                          std::to_string(bad.size()) +
                          " such values in all; mend the image, or leave out --strict to have them repaired");
     }
-    std::vector<float> repaired(bad.size());
-    for (std::size_t i = 0; i < bad.size(); ++i) {
-        const auto c = std::size_t(bad[i].channel);
-        if (bad[i].fault == Fault::negative)
-            continue; // 0
-        if (!any_good[c])
+    std::array<std::vector<std::pair<int, int>>, 3> holes;
+    for (const BadValue& value : bad) {
+        const auto c = std::size_t(value.channel);
+        if (value.fault != Fault::negative && !any_good[c])
             throw InputError("environment '" + name + "': channel " + std::to_string(c) +
                              " has no finite, non-negative value at all");
-        repaired[i] = bad[i].fault == Fault::infinite ? largest[c]
-                                                      : mean_of_nearest_good(image, bad[i].x, bad[i].y, bad[i].channel);
+        if (value.fault == Fault::nan)
+            holes[c].emplace_back(value.x, value.y);
+        else
+            image.at(value.x, value.y)[value.channel] = value.fault == Fault::infinite ? largest[c] : 0.f;
     }
-    for (std::size_t i = 0; i < bad.size(); ++i)
-        image.at(bad[i].x, bad[i].y)[bad[i].channel] = repaired[i];
+    for (int c = 0; c < 3; ++c)
+        fill_inwards(image, c, std::move(holes[std::size_t(c)]));
 }
 
 Environment environment_from_image(Image image, const std::string& name, EnvironmentReport& report,

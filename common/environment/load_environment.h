@@ -24,11 +24,12 @@ Environment environment_from_image(Image image, const std::string& name, Environ
                                    const EnvironmentLoading& loading = {});
 
 /// Repairs pixels in place and counts them. The rule, per channel:
-///   NaN       -> the mean of the nearest good pixels (the smallest square ring around it that has one);
+///   negative  -> 0 (-infinite too): compression and resampling leave small ones beside bright edges;
 ///   +infinite -> the largest finite value of that channel in the image (a sun that overflowed stays the brightest
 ///   thing);
 ///                so do values above 1e32, whose sums would overflow;
-///   negative  -> 0 (-infinite too): compression and resampling leave small ones beside bright edges.
+///   NaN       -> then, the mean of those of its 8 neighbours that are not NaN; where there are none, layer by layer
+///   from outside.
 /// Throws InputError if a channel has no good pixel at all, or under `strict` at the first bad one, with its place.
 void repair_pixels(Image& image, const std::string& name, bool strict, EnvironmentReport& report);
 

@@ -165,11 +165,14 @@ std::vector<Found> find_lights(const Image& image, const BrightPixels& bright, c
         for (LightRegion& region : connect_regions(image, candidates.runs, bright.background, rule.gap_degrees)) {
             if (!(region.excess > 0 && region.excess >= rule.least_share * bright.total))
                 continue;
-            if (cone_degrees(image, region) <= rule.max_half_angle_degrees)
+            if (cone_degrees(image, region) <= rule.max_half_angle_degrees) {
                 lights.push_back({std::move(region), candidates.threshold});
-            else
-                to_connect.push_back(
-                    {brighter_runs(image, region.runs, 2 * candidates.threshold), 2 * candidates.threshold});
+                continue;
+            }
+            // At least the dimmest pixel goes: over a black background the threshold is 0, and doubling that leads
+            // nowhere.
+            const double threshold = std::max(2 * candidates.threshold, least_brightness(image, region));
+            to_connect.push_back({brighter_runs(image, region.runs, threshold), threshold});
         }
     }
     std::stable_sort(lights.begin(), lights.end(),

@@ -9,8 +9,8 @@ namespace kokage {
 enum class TextureWrap { repeat, mirror, clamp };
 
 /// Where a surface is solid and where light passes: alpha of a texture against a cutoff (glTF alphaMode MASK).
-/// The one definition of "is there leaf here?" for rasters, rays and pictures alike: the NEAREST texel's alpha >= cutoff,
-/// so that every method sees exactly the same holes.
+/// The one definition of "is there leaf here?" for rasters, rays and pictures alike: the NEAREST texel's alpha >=
+/// cutoff, so that every method sees exactly the same holes.
 struct AlphaMask {
     std::shared_ptr<const Image> alpha; ///< one channel
     float cutoff = 0.5f;

@@ -58,25 +58,25 @@ ChannelChoice choose_channels(const OIIO::ImageSpec& spec) {
     return choice;
 }
 
-/// File formats whose pixels are stored with alpha multiplied in, or that come so because the reader knows no other
-/// way.
+/// Whether the pixels come with alpha multiplied in: because the format stores them so (EXR), or because the reader
+/// does it in spite of our request and says nothing (WebP, in OpenImageIO 2.4; it multiplies the encoded values).
 bool is_premultiplied(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec) {
     if (spec.get_int_attribute("oiio:UnassociatedAlpha", 0) != 0)
         return false;
     // These readers obey the request for straight alpha but do not say so in the header that they give.
     const std::string_view format = input.format_name();
-    return format != "png" && format != "webp" && format != "targa" && format != "bmp" && format != "ico" &&
-           format != "gif" && format != "psd";
+    return format != "png" && format != "targa" && format != "bmp" && format != "ico" && format != "gif" &&
+           format != "psd";
 }
 
-void divide_by_alpha(Image& image) {
+void divide_by_alpha(Image& image, bool integers) {
     const int alpha = image.channels - 1;
     for (std::size_t i = 0; i < image.pixels.size(); i += std::size_t(image.channels)) {
         float* pixel = image.pixels.data() + i;
         const float a = pixel[alpha];
         if (a != 0 && a != 1)
             for (int c = 0; c < alpha; ++c)
-                pixel[c] /= a;
+                pixel[c] = integers ? std::min(1.f, pixel[c] / a) : pixel[c] / a;
     }
 }
 
@@ -165,10 +165,10 @@ Image read(Input input, const std::string& name, const ImageLoading& loading) {
         image = std::move(chosen);
     }
     image = to_frame(std::move(image), spec);
+    const bool integers = !spec.format.is_floating_point();
     const bool alpha_wanted = loading.channels == 0 || loading.channels == 4;
     if (choice.has_alpha() && alpha_wanted && is_premultiplied(*input, spec))
-        divide_by_alpha(image);
-    const bool integers = !spec.format.is_floating_point();
+        divide_by_alpha(image, integers);
     if (loading.meaning == PixelMeaning::color && integers)
         decode_srgb(image, choice.has_alpha(), spec.format.size() == 1);
     return convert_channels(std::move(image), loading.channels);

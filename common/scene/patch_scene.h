@@ -1,5 +1,6 @@
 #pragma once
-// What light transport sees of a tree: triangles grouped into patches, each patch with one reflectance and transmittance.
+// What light transport sees of a tree: triangles grouped into patches, each patch with one reflectance and
+// transmittance.
 #include "common/scene/alpha_mask.h"
 #include "common/types.h"
 
@@ -16,8 +17,8 @@ struct Optics {
 
 enum class PatchKind : std::uint8_t { leaf, bark };
 
-/// A leaf (or a part of one, when leaves are subdivided), or a piece of bark. Bark is closed, so only its front is lit in truth;
-/// it is treated like any other two-sided patch with transmittance 0.
+/// A leaf (or a part of one, when leaves are subdivided), or a piece of bark. Bark is closed, so only its front is lit
+/// in truth; it is treated like any other two-sided patch with transmittance 0.
 struct Patch {
     std::uint32_t first_triangle = 0, triangle_count = 0; ///< a patch's triangles are consecutive
     std::uint32_t optics = 0;                             ///< index in PatchScene::optics
@@ -37,7 +38,8 @@ struct PatchScene {
     std::vector<glm::vec2> uvs; ///< as long as positions, or empty when no mask is used
     std::vector<glm::uvec3> triangles;
     std::vector<std::uint32_t> triangle_patch; ///< as long as triangles
-    std::vector<std::int16_t> triangle_mask;   ///< index in masks, -1 = solid; as long as triangles, or empty when no mask is used
+    std::vector<std::int16_t>
+        triangle_mask; ///< index in masks, -1 = solid; as long as triangles, or empty when no mask is used
     std::vector<AlphaMask> masks;
     std::vector<Patch> patches;
     std::vector<Optics> optics;

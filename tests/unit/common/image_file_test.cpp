@@ -32,6 +32,11 @@ constexpr std::array<unsigned char, 69> huge_png = {
     0x0c, 0x49, 0x44, 0x41, 0x54, 0x78, 0xda, 0x63, 0x60, 0xa0, 0x3d, 0x00, 0x00, 0x00, 0x64, 0x00, 0x01, 0xb8,
     0x99, 0xef, 0x99, 0x00, 0x00, 0x00, 0x00, 0x49, 0x45, 0x4e, 0x44, 0xae, 0x42, 0x60, 0x82};
 
+/// A lossless 8 x 8 WebP, all (204, 102, 51) at alpha 128.
+constexpr std::array<unsigned char, 38> alpha_webp = {
+    0x52, 0x49, 0x46, 0x46, 0x1e, 0x00, 0x00, 0x00, 0x57, 0x45, 0x42, 0x50, 0x56, 0x50, 0x38, 0x4c, 0x11, 0x00, 0x00,
+    0x00, 0x2f, 0x07, 0xc0, 0x01, 0x10, 0x07, 0x50, 0xb3, 0x32, 0x77, 0xa6, 0x80, 0x81, 0x88, 0xe8, 0x7f, 0x00, 0x00};
+
 class ImageFileTest : public ::testing::Test {
   protected:
     void SetUp() override {
@@ -130,6 +135,17 @@ TEST_F(ImageFileTest, AlphaStaysStraightThroughPremultipliedExr) {
     EXPECT_LE(largest_difference(load_image(folder / "a.exr"), image), 1e-6f);
     // As a light source the stored, premultiplied values count.
     EXPECT_NEAR(load_image(folder / "a.exr", {.channels = 3}).pixels[0], 0.4f, 1e-6f);
+}
+
+TEST_F(ImageFileTest, AlphaOfWebpComesOutStraight) {
+    const Image image = load_image(std::as_bytes(std::span(alpha_webp)), "alpha.webp", {.meaning = PixelMeaning::data});
+    ASSERT_EQ(image.channels, 4);
+    for (std::size_t i = 0; i < image.pixels.size(); i += 4) {
+        EXPECT_NEAR(image.pixels[i], 0.8f, 0.01f); // the reader rounds after multiplying
+        EXPECT_NEAR(image.pixels[i + 1], 0.4f, 0.01f);
+        EXPECT_NEAR(image.pixels[i + 2], 0.2f, 0.01f);
+        EXPECT_NEAR(image.pixels[i + 3], 128 / 255.f, 1e-6f);
+    }
 }
 
 TEST_F(ImageFileTest, ConvertsChannels) {

@@ -150,6 +150,21 @@ TEST(SplitLights, SkyBetweenTreesGivesItsBrightestParts) {
         EXPECT_LE(light.half_angle, 32 * kPi / 180);
 }
 
+TEST(SplitLights, WideEvenRegionOverBlackStays) {
+    // Threshold 0, and too wide for a light at every threshold.
+    Image image(128, 64, 3);
+    for (int y = 20; y < 24; ++y)
+        for (int x = 0; x < 128; ++x)
+            set_pixel(image, x, y, glm::vec3(3));
+    LightSplit split = split_lights(image);
+    EXPECT_TRUE(split.lights.empty());
+    EXPECT_EQ(split.remainder.pixels, image.pixels);
+    set_pixel(image, 50, 22, glm::vec3(3e3f)); // a lamp within it is one
+    split = split_lights(image);
+    expect_sound(image, split);
+    EXPECT_EQ(split.lights.size(), 1u);
+}
+
 TEST(SplitLights, ConstantAndBlackHaveNoLights) {
     for (const float value : {0.f, 1e-30f, 0.5f, 1e30f})
         for (const auto& [width, height] : {std::pair(1, 1), {2, 1}, {64, 32}}) {
