@@ -79,7 +79,10 @@ class BranchWriter {
     /// Bumps of the bark are no limbs: a limb reaches farther from its fork than the wood is thick there.
     static bool is_limb(const std::vector<AxisNode>& nodes, std::uint32_t child) {
         const AxisNode& parent = nodes[nodes[child].parent];
-        return nodes[child].reach + glm::distance(nodes[child].position, parent.position) > 2.f * parent.radius_m;
+        float thickness = parent.radius_m;
+        for (const std::uint32_t sibling : parent.children)
+            thickness = std::max(thickness, nodes[sibling].radius_m);
+        return nodes[child].reach + glm::distance(nodes[child].position, parent.position) > 2.f * thickness;
     }
 
     Skeleton& skeleton_;
