@@ -1,6 +1,8 @@
 // `kokage describe`, and how a tree is named on the command line.
 #include "tests/support/program_run.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kokage {
 namespace {
 
@@ -14,6 +16,17 @@ TEST(Describe, TellsWhatASpeciesGrowsInto) {
     EXPECT_NE(run.output.find("  order 0    1 branches"), std::string::npos);
     EXPECT_EQ(run.errors, "");
     EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Describe, JsonSaysTheSame) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage({"describe", "oak", "--leaves", "500", "--json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const nlohmann::json json = nlohmann::json::parse(run.output);
+    EXPECT_EQ(json["leaves"]["count"], 500);
+    EXPECT_EQ(json["branching"]["known"], true);
+    EXPECT_EQ(json["branching"]["orders"][0]["branches"], 1);
+    EXPECT_EQ(json["surfaces"].size(), 2u);
 }
 
 TEST(Describe, WrongTreesAreRefusedInOneLine) {

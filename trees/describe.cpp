@@ -1,0 +1,190 @@
+#include "trees/describe.h"
+
+#include "trees/find_branching.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <set>
+
+namespace kokage {
+namespace {
+
+std::string formatted(const char* format, double value) {
+    char text[64];
+    std::snprintf(text, sizeof text, format, value);
+    return text;
+}
+
+std::string color_text(const glm::vec3& c) {
+    return formatted("%.3f, ", double(c.r)) + formatted("%.3f, ", double(c.g)) + formatted("%.3f", double(c.b));
+}
+
+std::string length_text(double metres) {
+    return metres < 0.995 ? formatted("%.3g cm", 100 * metres) : formatted("%.3g m", metres);
+}
+
+std::string area_text(double square_metres) {
+    return square_metres < 0.1 ? formatted("%.3g cm2", 1e4 * square_metres) : formatted("%.4g m2", square_metres);
+}
+
+std::string count_text(std::size_t count) {
+    std::string text = std::to_string(count);
+    for (int place = int(text.size()) - 3; place > 0; place -= 3)
+        text.insert(std::size_t(place), ",");
+    return text;
+}
+
+void measure(const Tree& tree, TreeDescription& d) {
+    const PatchScene scene = make_patches(tree);
+    const Bounds box = bounds_of(scene);
+    d.low = glm::dvec3(box.low) + tree.origin;
+    d.high = glm::dvec3(box.high) + tree.origin;
+    d.triangles = scene.triangles.size();
+    const std::vector<double> areas = solid_areas(scene);
+    std::vector<double> leaf_areas(tree.leaves.size(), 0.0);
+    for (std::size_t p = 0; p < areas.size(); ++p) {
+        if (scene.patches[p].kind == PatchKind::leaf) {
+            leaf_areas[scene.patches[p].leaf] += areas[p];
+            d.leaf_area_m2 += areas[p];
+        } else {
+            d.bark_area_m2 += areas[p];
+        }
+    }
+    if (leaf_areas.empty())
+        return;
+    std::sort(leaf_areas.begin(), leaf_areas.end());
+    d.smallest_leaf_m2 = leaf_areas.front();
+    d.median_leaf_m2 = leaf_areas[leaf_areas.size() / 2];
+    d.largest_leaf_m2 = leaf_areas.back();
+}
+
+void count_orders(const Tree& tree, TreeDescription& d) {
+    for (const Branch& branch : tree.skeleton.branches)
+        ++d.orders[branch.order].branches;
+    std::set<std::int32_t> bearing;
+    for (const Leaf& leaf : tree.leaves) {
+        if (leaf.branch < 0 || std::size_t(leaf.branch) >= tree.skeleton.branches.size()) {
+            ++d.leaves_without_branch;
+            continue;
+        }
+        TreeDescription::Order& order = d.orders[tree.skeleton.branches[std::size_t(leaf.branch)].order];
+        ++order.leaves;
+        if (bearing.insert(leaf.branch).second)
+            ++order.bearing;
+    }
+}
+
+nlohmann::json vector_json(const glm::dvec3& v) {
+    return {v.x, v.y, v.z};
+}
+
+/// Shortest decimal that reads back as the same float: 0.1, not 0.10000000149.
+nlohmann::json color_json(const glm::vec3& c) {
+    const auto number = [](float value) { return std::stod(formatted("%.6g", double(value))); };
+    return {number(c.r), number(c.g), number(c.b)};
+}
+
+} // namespace
+
+TreeDescription describe(const Tree& tree) {
+    TreeDescription d;
+    d.name = tree.name;
+    d.source = tree.source;
+    d.crown_radius_m = double(crown_radius(tree));
+    d.leaves = tree.leaves.size();
+    d.bark_patches = tree.bark_patch_count;
+    d.branching_known = tree.branching_known;
+    d.notes = tree.notes;
+    measure(tree, d);
+    count_orders(tree, d);
+    for (const TreePart& part : tree.parts) {
+        const TreeMaterial& material = tree.materials[part.material];
+        TreeDescription::Surface surface;
+        surface.material = material.name;
+        surface.kind = part.kind;
+        surface.triangles = part.triangles.size();
+        surface.textured = material.base_color_texture != nullptr;
+        surface.masked = material.alpha_texture != nullptr;
+        surface.optics = optics_of(material, part.kind, mean_base_color(tree, part.material, part.kind));
+        surface.transmittance_guessed = part.kind == TreePartKind::foliage && material.diffuse_transmission < 0;
+        d.surfaces.push_back(std::move(surface));
+    }
+    return d;
+}
+
+std::string text_of(const TreeDescription& d) {
+    const glm::dvec3 size = d.high - d.low;
+    std::string text = "tree         " + d.name + " (" + d.source + ")\n";
+    text += "size         " + length_text(size.y) + " high, " + length_text(size.x) + " x " + length_text(size.z) +
+            " wide; crown radius " + length_text(d.crown_radius_m) + "; lowest point at height " +
+            formatted("%.4g m", d.low.y) + "\n";
+    text += "leaves       " + count_text(d.leaves);
+    if (d.leaves > 0)
+        text += ", " + area_text(d.leaf_area_m2) + " together (one side), median " + area_text(d.median_leaf_m2) +
+                ", smallest " + area_text(d.smallest_leaf_m2) + ", largest " + area_text(d.largest_leaf_m2);
+    text += "\nbark         " + count_text(d.bark_patches) + " patches, " + area_text(d.bark_area_m2) + "\n";
+    std::size_t branches = 0;
+    for (const auto& [number, order] : d.orders)
+        branches += order.branches;
+    text += std::string("branching    ") + (d.branching_known ? "known" : "inferred from bark and leaves") + ", " +
+            count_text(branches) + " branches\n";
+    for (const auto& [number, order] : d.orders) {
+        char label[24];
+        std::snprintf(label, sizeof label, "  order %-4d ", number);
+        text += label + count_text(order.branches) + " branches, " + count_text(order.leaves) + " leaves on " +
+                count_text(order.bearing) + " of them\n";
+    }
+    if (d.leaves_without_branch > 0)
+        text += "  " + count_text(d.leaves_without_branch) + " leaves belong to no branch\n";
+    for (const TreeDescription::Surface& s : d.surfaces) {
+        const bool leaf = s.kind == TreePartKind::foliage;
+        text += std::string(leaf ? "foliage" : "bark   ") + "      '" + s.material + "': " + count_text(s.triangles) +
+                " triangles" + (s.textured ? ", textured" : "") + (s.masked ? ", alpha mask" : "") + "; reflectance " +
+                color_text(s.optics.reflectance);
+        if (leaf)
+            text +=
+                "; transmittance " + color_text(s.optics.transmittance) + (s.transmittance_guessed ? " (guessed)" : "");
+        text += "\n";
+    }
+    for (const std::string& note : d.notes)
+        text += "note         " + note + "\n";
+    return text;
+}
+
+nlohmann::json json_of(const TreeDescription& d) {
+    nlohmann::json json = {{"name", d.name},
+                           {"source", d.source},
+                           {"bounds", {{"low", vector_json(d.low)}, {"high", vector_json(d.high)}}},
+                           {"height_m", d.high.y - d.low.y},
+                           {"crown_radius_m", d.crown_radius_m},
+                           {"triangles", d.triangles},
+                           {"leaves",
+                            {{"count", d.leaves},
+                             {"area_m2", d.leaf_area_m2},
+                             {"smallest_m2", d.smallest_leaf_m2},
+                             {"median_m2", d.median_leaf_m2},
+                             {"largest_m2", d.largest_leaf_m2},
+                             {"without_branch", d.leaves_without_branch}}},
+                           {"bark", {{"patches", d.bark_patches}, {"area_m2", d.bark_area_m2}}},
+                           {"branching", {{"known", d.branching_known}, {"orders", nlohmann::json::array()}}},
+                           {"surfaces", nlohmann::json::array()},
+                           {"notes", d.notes}};
+    for (const auto& [number, order] : d.orders)
+        json["branching"]["orders"].push_back(
+            {{"order", number}, {"branches", order.branches}, {"bearing", order.bearing}, {"leaves", order.leaves}});
+    for (const TreeDescription::Surface& s : d.surfaces) {
+        nlohmann::json surface = {{"material", s.material},
+                                  {"kind", s.kind == TreePartKind::foliage ? "foliage" : "bark"},
+                                  {"triangles", s.triangles},
+                                  {"textured", s.textured},
+                                  {"alpha_mask", s.masked},
+                                  {"reflectance", color_json(s.optics.reflectance)},
+                                  {"transmittance", color_json(s.optics.transmittance)},
+                                  {"transmittance_guessed", s.transmittance_guessed}};
+        json["surfaces"].push_back(std::move(surface));
+    }
+    return json;
+}
+
+} // namespace kokage
