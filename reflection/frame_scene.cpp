@@ -42,13 +42,14 @@ Extent extent_of(const std::vector<glm::dvec3>& points, const Stand& stand) {
     return extent;
 }
 
-/// The pitch that puts the highest point where it should be: by bisection, as tilting the camera up lowers all that it
-/// sees.
-double pitch_for_top(const std::vector<glm::dvec3>& points, Stand stand, double top) {
+/// The pitch at which the scene's top and bottom are equally far into the parts of the frame that they may fill: by
+/// bisection, as tilting the camera up lowers all that it sees.
+double balanced_pitch(const std::vector<glm::dvec3>& points, Stand stand) {
     double low = -1.2, high = 1.2;
     for (int k = 0; k < 40; ++k) {
         stand.pitch = 0.5 * (low + high);
-        (extent_of(points, stand).top > top ? low : high) = stand.pitch;
+        const Extent extent = extent_of(points, stand);
+        (extent.top * kFillBelow + extent.bottom * kFillAbove > 0 ? low : high) = stand.pitch;
     }
     return 0.5 * (low + high);
 }
@@ -62,14 +63,14 @@ Camera stand_before(const std::vector<glm::dvec3>& points, double height, const 
     const double eye = kEyeHeight * height + 0.15 * std::max(0.0, 0.7 - height);
     auto stand_at = [&](double distance) {
         Stand stand{{distance * std::sin(azimuth), eye, distance * std::cos(azimuth)}, azimuth, 0};
-        stand.pitch = pitch_for_top(points, stand, kFillAbove * tangent);
+        stand.pitch = balanced_pitch(points, stand);
         return stand;
     };
     double near = 0.05, far = 1e4;
     for (int k = 0; k < 40; ++k) {
         const double middle = std::sqrt(near * far);
         const Extent extent = extent_of(points, stand_at(middle));
-        const bool fits = extent.bottom >= -kFillBelow * tangent && extent.top <= (kFillAbove + 1e-6) * tangent &&
+        const bool fits = extent.bottom >= -kFillBelow * tangent && extent.top <= kFillAbove * tangent &&
                           extent.beside <= kFillBeside * wide;
         (fits ? far : near) = middle;
     }

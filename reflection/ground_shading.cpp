@@ -59,7 +59,7 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
     } else if (options.ground == PictureGround::automatic) {
         if (environment.has_lower_half && scene.patches->triangles.empty())
             return; // nothing that could cast a shadow
-        height_ = bounds.low.y;
+        height_ = scene.foot_height.value_or(bounds.low.y);
         if (!environment.has_lower_half)
             albedo_ = glm::vec3(0.2f);
     } else {

@@ -35,7 +35,8 @@ struct ShadedScene {
     std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
     std::vector<glm::vec3> radiance_front,
-        radiance_back; ///< per patch: all light (used where per-pixel shadows are off)
+        radiance_back;                ///< per patch: all light (used where per-pixel shadows are off)
+    std::optional<float> foot_height; ///< where it stands if it has no ground of its own; empty = its lowest point
 };
 
 /// What lies under the scene in the picture.

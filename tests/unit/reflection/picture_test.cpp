@@ -58,6 +58,19 @@ TEST(Picture, BackdropDarkensUnderADarkTreeAndNotFarAway) {
     EXPECT_GT(pixel(without, 16, 19).g, pixel(image, 16, 19).g);
 }
 
+TEST(Picture, RootsBelowTheFootAreHiddenByTheGround) {
+    PatchScene patches;
+    patches.optics = {Optics{}};
+    add_rectangle(patches, {-1, -3, 0}, {2, 0, 0}, {0, 4, 0});
+    ShadedScene scene = evenly_shaded(patches, {0, 5, 0});
+    const Camera camera = camera_at({0, 2, 8}, {0, -0.5f, 0}, 0.05f);
+    EXPECT_NEAR(pixel(render(scene, constant_environment({1, 0, 0}), camera, small_picture(3, 3)), 1, 1).g, 5.f, 1e-4f);
+    scene.foot_height = 0.f;
+    const glm::vec3 hidden = pixel(render(scene, constant_environment({1, 0, 0}), camera, small_picture(3, 3)), 1, 1);
+    EXPECT_EQ(hidden.g, 0.f);
+    EXPECT_GT(hidden.r, 0.5f);
+}
+
 /// Share of a disc (radius 1) beyond a chord at distance s from its centre.
 double segment_share(double s) {
     s = std::clamp(s, -1.0, 1.0);
