@@ -14,7 +14,7 @@ std::unique_ptr<Transport> make_transport(const PatchScene& scene, const Tree& t
     case Method::paper:
         return make_paper_transport(scene, tree, options, progress);
     case Method::light_maps:
-        break;
+        return make_light_maps_transport(scene, tree, options, progress);
     case Method::bundles:
         return make_bundles_transport(scene, tree, options, progress);
     case Method::path_traced:
