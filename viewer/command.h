@@ -10,6 +10,7 @@ namespace kokage {
 /// What every command is told beside its own options.
 struct CommandContext {
     bool quiet = false; ///< no progress, no summary: errors and what was asked for alone
+    int threads = 0;    ///< 0 = as many as the machine has; already set
     TerminalProgress* progress = nullptr;
 };
 
@@ -23,6 +24,7 @@ Command grow_command(CLI::App& program);
 Command describe_command(CLI::App& program);
 Command shade_command(CLI::App& program);
 Command compare_command(CLI::App& program);
+Command bench_command(CLI::App& program);
 
 /// All that are built, in the order in which one uses them.
 std::vector<Command> all_commands(CLI::App& program);

@@ -4,7 +4,9 @@
 #include "common/services/output_file.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
+#include "viewer/compare_trees.h"
 #include "viewer/output_check.h"
+#include "viewer/stop_signal.h"
 #include "viewer/values.h"
 
 #include <algorithm>
@@ -65,13 +67,49 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     }
 }
 
+void compare_trees(const CompareOptions& options, const CommandContext& context) {
+    const TreeComparison c =
+        compare_trees(options.picture, options.reference, !options.error_map.empty(), *context.progress);
+    context.progress->clear();
+    std::printf("leaves                %s\n", count_text(c.leaves).c_str());
+    std::printf("mean relative error   %.4g %%, 95 %% below %.4g %%\n", 100 * c.accuracy.mre, 100 * c.accuracy.p95);
+    std::printf("RMSE / mean           %.4g %%\n", 100 * c.accuracy.rmse_over_mean);
+    std::printf("bias                  %+.4g %%\n", 100 * c.accuracy.bias);
+    std::printf("largest error         %.4g %%, of leaf %zu\n", 100 * c.largest, c.largest_leaf);
+    const WritingFiles writing;
+    if (!options.error_map.empty()) {
+        save_image(options.error_map, c.map, {.png_encoding = PngEncoding::as_is});
+        if (!context.quiet)
+            std::printf("error map: %s (brightest at %.4g %%)\n", options.error_map.c_str(), 100 * c.map_scale);
+    }
+    if (!options.report.empty()) {
+        const Json report = {{"shaded", options.picture.string()},
+                             {"reference", options.reference.string()},
+                             {"leaves", c.leaves},
+                             {"mre", c.accuracy.mre},
+                             {"p95", c.accuracy.p95},
+                             {"rmse_over_mean", c.accuracy.rmse_over_mean},
+                             {"bias", c.accuracy.bias},
+                             {"largest", c.largest},
+                             {"largest_leaf", c.largest_leaf}};
+        write_file(options.report, report.dump(2) + "\n");
+    }
+}
+
+bool is_tree(const std::filesystem::path& path) {
+    const std::string ending = lower_ending(path);
+    return ending == ".glb" || ending == ".gltf";
+}
+
 } // namespace
 
 Command compare_command(CLI::App& program) {
     const auto options = std::make_shared<CompareOptions>();
-    CLI::App* app = program.add_subcommand("compare", "Error figures and an error map of two pictures of one size");
+    CLI::App* app = program.add_subcommand(
+        "compare", "Error figures and an error map of two pictures, or of two shadings of a tree");
     app->footer("\nExample: kokage compare fast.png truth.png -o errors.png");
-    app->add_option("A", options->picture, "What is judged: a picture (.png, .exr, .hdr, .jpg, ...)")
+    app->add_option("A", options->picture,
+                    "What is judged: a picture (.png, .exr, .hdr, .jpg, ...) or a tree shaded by kokage (.glb)")
         ->required()
         ->type_name("FILE");
     app->add_option("B", options->reference, "The reference, of the same kind")->required()->type_name("FILE");
@@ -85,7 +123,13 @@ Command compare_command(CLI::App& program) {
                     check_output(options->report, "the report", {".json"});
                 check_distinct({options->picture, options->error_map, options->report});
                 check_distinct({options->reference, options->error_map, options->report});
-                compare_pictures(*options, context);
+                if (is_tree(options->picture) != is_tree(options->reference))
+                    throw InputError("'" + options->picture.string() + "' and '" + options->reference.string() +
+                                     "' are a tree and a picture; compare two of one kind");
+                if (is_tree(options->picture))
+                    compare_trees(*options, context);
+                else
+                    compare_pictures(*options, context);
             }};
 }
 

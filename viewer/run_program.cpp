@@ -54,7 +54,7 @@ int run_command(const Command& command, bool quiet, int threads) {
     watch_stop_signals();
     TerminalProgress progress(!quiet && stderr_is_terminal());
     try {
-        command.run({.quiet = quiet, .progress = &progress});
+        command.run({.quiet = quiet, .threads = threads, .progress = &progress});
         std::cout.flush();
         return std::cout ? 0 : complain("the output could not be written (is the disk full?)", kInternalError);
     } catch (const Stopped&) {
@@ -68,7 +68,7 @@ int run_command(const Command& command, bool quiet, int threads) {
         return complain("not enough memory", kInternalError);
     } catch (const std::exception& error) {
         progress.clear();
-        return complain(std::string("internal error: ") + error.what(), kInternalError);
+        return complain(error.what(), kInternalError);
     }
 }
 

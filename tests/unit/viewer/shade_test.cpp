@@ -1,0 +1,253 @@
+// `kokage shade` as a user runs it, on small trees.
+#include "common/scene/image_file.h"
+#include "tests/support/program_run.h"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+/// A small oak, quickly; further words are added.
+Words small_shade(const Words& more) {
+    Words words = {"shade", "oak", "--leaves", "200", "--image-size", "48x32", "--samples", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+Json report_of(const TemporaryFolder& folder, const Words& more) {
+    Words words = small_shade(more);
+    words.insert(words.end(), {"--report", "r.json"});
+    const ProgramRun run = run_kokage(words, folder.path());
+    EXPECT_EQ(run.status, 0) << run.errors;
+    return run.status == 0 ? Json::parse(read_text(folder / "r.json")) : Json();
+}
+
+TEST(Shade, WritesTreePictureAndReportAndSaysWhere) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage(small_shade({}), folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(run.errors, "");
+    EXPECT_EQ(folder.files(), Words({"oak.glb", "oak.json", "oak.png"}));
+    for (const char* name : {"oak.glb", "oak.json", "oak.png"})
+        EXPECT_NE(run.output.find((std::filesystem::canonical(folder.path()) / name).string()), std::string::npos)
+            << run.output;
+    for (const char* stage : {"grow", "environment", "patches", "transport", "solve", "picture", "write"})
+        EXPECT_NE(run.output.find(std::string("\n  ") + stage + " "), std::string::npos) << stage;
+    EXPECT_EQ(read_text(folder / "oak.glb").substr(0, 4), "glTF");
+    const Image picture = load_image(folder / "oak.png");
+    EXPECT_EQ(picture.width, 48);
+    EXPECT_EQ(picture.height, 32);
+    EXPECT_GT(*std::max_element(picture.pixels.begin(), picture.pixels.end()), 0.1f);
+}
+
+TEST(Shade, ReportHoldsWhatItPromises) {
+    TemporaryFolder folder;
+    const Json r = report_of(folder, {"--seed", "3"});
+    EXPECT_EQ(r["inputs"]["arguments"]["--seed"], "3");
+    EXPECT_EQ(r["inputs"]["tree"]["source"], "grown: oak, seed 1");
+    EXPECT_EQ(r["inputs"]["environment"]["lights"][0]["name"], "sun");
+    EXPECT_EQ(r["inputs"]["ground"]["height_m"], 0);
+    EXPECT_EQ(r["method"]["name"], "bundles");
+    EXPECT_EQ(r["method"]["asked_error"], 0.05);
+    EXPECT_EQ(r["method"]["seed"], 3);
+    EXPECT_EQ(r["counts"]["leaves"], 200);
+    EXPECT_GT(r["counts"]["patches"], 200);
+    ASSERT_GE(r["stages"].size(), 5u);
+    double stages = 0;
+    for (const Json& stage : r["stages"]) {
+        EXPECT_GE(stage["wall_seconds"], 0);
+        stages += double(stage["cpu_seconds"]);
+    }
+    EXPECT_GT(stages, 0);
+    EXPECT_LE(stages, double(r["cpu_seconds"]) + 0.01);
+    EXPECT_GT(r["peak_memory_bytes"], 1e6);
+    EXPECT_GT(r["energy"]["in"], 0);
+    EXPECT_NEAR(double(r["energy"]["balance"]), 1, 0.1);
+    EXPECT_GT(r["estimated_error"], 0);
+    EXPECT_LT(r["estimated_error"], 0.15);
+    for (const char* key : {"residuals", "skipped", "warnings", "method_stages"})
+        EXPECT_TRUE(r[key].is_array()) << key;
+    EXPECT_EQ(r["outputs"]["report"], "r.json");
+    EXPECT_EQ(folder.files(), Words({"r.json"})) << "only what was named is written";
+}
+
+TEST(Shade, EveryMethodShades) {
+    TemporaryFolder folder;
+    for (const char* method : {"paper", "light-maps", "bundles", "path-traced"}) {
+        const Json r = report_of(folder, {"--method", method});
+        EXPECT_EQ(r["method"]["name"], method);
+        EXPECT_GT(r["energy"]["in"], 0);
+    }
+}
+
+TEST(Shade, FilesAreShadedUnderANewNameAndAreTheSameTree) {
+    TemporaryFolder folder;
+    ASSERT_EQ(run_kokage({"grow", "--leaves", "200", "-o", "an oak.glb", "--quiet"}, folder.path()).status, 0);
+    const std::string before = read_text(folder / "an oak.glb");
+    const ProgramRun run =
+        run_kokage({"shade", "an oak.glb", "--image-size", "16x16", "--samples", "1", "--quiet"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(run.output + run.errors, "");
+    EXPECT_EQ(folder.files(), Words({"an oak-shaded.glb", "an oak-shaded.json", "an oak-shaded.png", "an oak.glb"}));
+    EXPECT_EQ(read_text(folder / "an oak.glb"), before);
+
+    // Grown here or loaded: the same tree, so the same light, but for the leaf texture's mean, which 8 bits round.
+    ASSERT_EQ(run_kokage(small_shade({"-o", "grown.glb", "--quiet"}), folder.path()).status, 0);
+    const ProgramRun same =
+        run_kokage({"compare", "an oak-shaded.glb", "grown.glb", "--report", "c.json"}, folder.path());
+    ASSERT_EQ(same.status, 0) << same.errors;
+    EXPECT_LT(Json::parse(read_text(folder / "c.json"))["mre"], 1e-3);
+}
+
+TEST(Shade, ResultsAreTheSameBitsForAnyNumberOfThreads) {
+    TemporaryFolder folder;
+    Words trees;
+    std::vector<std::vector<float>> pictures;
+    for (const char* threads : {"1", "2", "5"}) {
+        ASSERT_EQ(
+            run_kokage(small_shade({"-o", "t.glb", "--image", "t.exr", "--threads", threads}), folder.path()).status,
+            0);
+        trees.push_back(read_text(folder / "t.glb"));
+        pictures.push_back(load_image(folder / "t.exr").pixels); // the file holds the time of writing too
+    }
+    EXPECT_TRUE(trees[0] == trees[1] && trees[0] == trees[2]);
+    EXPECT_TRUE(pictures[0] == pictures[1] && pictures[0] == pictures[2]);
+}
+
+TEST(Shade, SurroundingsAndMaterialsAreWhatTheUserSays) {
+    TemporaryFolder folder;
+    Json r = report_of(folder, {"--environment", "constant:0.5", "--light", "point:0,3,0,5", "--light",
+                                "directional:90,30,1,2,3", "--leaf-reflectance", "0.5", "--leaf-transmittance",
+                                "0.4,0.3,0.2", "--bark-albedo", "0"});
+    EXPECT_EQ(r["inputs"]["environment"]["lights"].size(), 2u);
+    EXPECT_FALSE(r["inputs"].contains("ground")) << "a constant environment lights from below";
+    for (const Json& optics : r["inputs"]["optics"]) {
+        const bool leaf = optics["kind"] == "leaf";
+        EXPECT_NEAR(double(optics["reflectance"][1]), leaf ? 0.5 : 0, 1e-6);
+        EXPECT_NEAR(double(optics["transmittance"][2]), leaf ? 0.2 : 0, 1e-6);
+    }
+    r = report_of(folder, {"--environment", "gradient", "--ground-albedo", "0.3"});
+    EXPECT_NEAR(double(r["inputs"]["ground"]["albedo"][2]), 0.3, 1e-6);
+    r = report_of(folder, {"--sun", "10,20", "--no-ground"});
+    EXPECT_NEAR(double(r["inputs"]["environment"]["lights"][0]["direction"][1]), std::sin(20 * 3.14159265 / 180), 1e-6);
+    EXPECT_FALSE(r["inputs"].contains("ground"));
+}
+
+TEST(Shade, BadPixelsAreCountedOrRefused) {
+    TemporaryFolder folder;
+    Image sky(16, 8, 3);
+    std::fill(sky.pixels.begin(), sky.pixels.end(), 1.f);
+    sky.at(3, 2)[0] = -1;
+    save_image(folder / "my sky.exr", sky);
+    const Json r = report_of(folder, {"--environment", "my sky.exr"});
+    EXPECT_EQ(r["inputs"]["environment"]["bad_pixels"]["negative"], 1);
+    EXPECT_EQ(r["inputs"]["environment"]["bad_pixels"]["first"], Json::array({3, 2}));
+    const ProgramRun run = run_kokage(small_shade({"--environment", "my sky.exr", "--strict"}), folder.path());
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_complaint(run.errors));
+}
+
+TEST(Shade, MistakesAreFoundBeforeTheWork) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "sky.exr") << "no image";
+    std::ofstream(folder / "t.glb") << "no tree";
+    const std::vector<std::pair<Words, std::string>> wrongs = {
+        {{"--method", "radiosity"}, "path-traced"},
+        {{"--method", "paper", "--error", "0.1"}, "--error"},
+        {{"--error", "0"}, "--error"},
+        {{"--error", "0.05", "--effort", "8"}, "--effort"},
+        {{"--bands", "0"}, "--bands"},
+        {{"--bands", "41"}, "--bands"},
+        {{"--maps", "-1"}, "--maps"},
+        {{"--gather", "sine"}, "--gather"},
+        {{"--sun", "1,2,3"}, "--sun"},
+        {{"--sun", "0,91"}, "--sun"},
+        {{"--environment", "constant", "--sun", "0,45"}, "--sun"},
+        {{"--environment", "constant:-1"}, "constant"},
+        {{"--environment", "gradient:1,2"}, "gradient"},
+        {{"--environment", "missing.hdr"}, "missing.hdr"},
+        {{"--environment", "."}, "folder"},
+        {{"--environment", "sky.exr"}, "sky.exr"},
+        {{"--light", "candle:1"}, "candle"},
+        {{"--ground", "--no-ground"}, "ground"},
+        {{"--no-ground", "--ground-albedo", "0.2"}, "--ground-albedo"},
+        {{"--ground-albedo", "1.5"}, "--ground-albedo"},
+        {{"--leaf-reflectance", "0.7", "--leaf-transmittance", "0.4"}, "more than 1"},
+        {{"--leaf-reflectance", "green"}, "green"},
+        {{"--image-size", "big"}, "big"},
+        {{"--samples", "0"}, "--samples"},
+        {{"--exposure", "nan"}, "--exposure"},
+        {{"-o", "tree.obj"}, ".glb"},
+        {{"--image", "tree.jpg"}, ".png"},
+        {{"--report", "tree.txt"}, ".json"},
+        {{"-o", "nowhere/tree.glb"}, "nowhere"},
+        {{"--image", "x.png", "--split-sides"}, "--split-sides"},
+        {{"--environment", "sky.exr", "--image", "sky.exr"}, "sky.exr"},
+        {{"--data", "nowhere"}, "nowhere"},
+    };
+    for (const auto& [words, hint] : wrongs) {
+        // A million leaves would take long: the mistake has to be found first. (An image that can't be read is found
+        // after growing.)
+        Words all = {"shade", "oak", "--leaves", words == Words({"--environment", "sky.exr"}) ? "100" : "1000000"};
+        all.insert(all.end(), words.begin(), words.end());
+        const auto start = std::chrono::steady_clock::now();
+        const ProgramRun run = run_kokage(all, folder.path());
+        EXPECT_EQ(run.status, 2) << hint << ": " << run.errors;
+        EXPECT_TRUE(is_one_complaint(run.errors)) << hint;
+        EXPECT_NE(run.errors.find(hint), std::string::npos) << run.errors;
+        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << hint;
+    }
+    const ProgramRun overwriting = run_kokage({"shade", "t.glb", "-o", "t.glb"}, folder.path());
+    EXPECT_EQ(overwriting.status, 2);
+    EXPECT_NE(overwriting.errors.find("overwritten"), std::string::npos) << overwriting.errors;
+    EXPECT_EQ(folder.files(), Words({"sky.exr", "t.glb"}));
+    EXPECT_EQ(read_text(folder / "sky.exr") + read_text(folder / "t.glb"), "no imageno tree");
+}
+
+TEST(Shade, StopsOnCtrlCAndLeavesNothingHalfWritten) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "oak.glb") << "an older oak";
+    const auto start = std::chrono::steady_clock::now();
+    const ProgramRun run =
+        run_kokage({"shade", "oak", "--leaves", "20000", "--method", "path-traced", "--effort", "100000"},
+                   folder.path(), {.interrupt_after_seconds = 1.5});
+    EXPECT_EQ(run.status, 130);
+    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
+    EXPECT_TRUE(is_one_complaint(run.errors));
+    EXPECT_EQ(folder.files(), Words({"oak.glb"}));
+    EXPECT_EQ(read_text(folder / "oak.glb"), "an older oak");
+}
+
+TEST(Shade, DataFolderIsSearchedForNamesThatAreNotHere) {
+    TemporaryFolder folder;
+    std::filesystem::create_directory(folder / "data");
+    ASSERT_EQ(run_kokage({"grow", "--leaves", "50", "-o", "data/tiny.glb", "--quiet"}, folder.path()).status, 0);
+    const ProgramRun run = run_kokage({"shade", "tiny.glb", "--data", "data", "--report", "r.json"}, folder.path());
+    EXPECT_EQ(run.status, 0) << run.errors;
+}
+
+TEST(Compare, DifferentTreesAndUnshadedTreesAreRefused) {
+    TemporaryFolder folder;
+    ASSERT_EQ(run_kokage(small_shade({"-o", "a.glb", "--quiet"}), folder.path()).status, 0);
+    ASSERT_EQ(run_kokage(small_shade({"-o", "b.glb", "--quiet", "--set", "seed=2"}), folder.path()).status, 0);
+    ASSERT_EQ(run_kokage({"grow", "--leaves", "200", "-o", "bare.glb", "--quiet"}, folder.path()).status, 0);
+    save_image(folder / "p.png", Image(4, 4, 3));
+    for (const Words& words : {Words{"compare", "a.glb", "b.glb"}, Words{"compare", "a.glb", "bare.glb"},
+                               Words{"compare", "a.glb", "p.png"}}) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2) << words.back();
+        EXPECT_TRUE(is_one_complaint(run.errors));
+    }
+    const ProgramRun self = run_kokage({"compare", "a.glb", "a.glb", "-o", "map.png"}, folder.path());
+    EXPECT_EQ(self.status, 0) << self.errors;
+    EXPECT_NE(self.output.find("mean relative error   0 %"), std::string::npos) << self.output;
+    EXPECT_FALSE(load_image(folder / "map.png").empty());
+}
+
+} // namespace
+} // namespace kokage

@@ -1,0 +1,157 @@
+// `kokage shade`: tree + surroundings -> the light on every leaf, as glTF, picture and report.
+#include "common/scene/image_file.h"
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+#include "trees/write_tree.h"
+#include "viewer/command.h"
+#include "viewer/output_check.h"
+#include "viewer/shade_options.h"
+#include "viewer/shaded_scene.h"
+#include "viewer/shading_report.h"
+#include "viewer/stage_clock.h"
+#include "viewer/stop_signal.h"
+#include "viewer/values.h"
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+/// Everything between the options and the files.
+struct Shading {
+    Tree tree;
+    Environment environment;
+    EnvironmentReport environment_report;
+    PatchScene patches;
+    PatchOrigins origins;
+    Solution solution;
+    std::optional<Image> picture; ///< linear radiance
+};
+
+Image draw(const Shading& shading, const ShadeOptions& options, Progress& progress) {
+    const ShadedScene scene = shaded_scene(shading.tree, shading.patches, shading.origins, shading.solution);
+    const RayQueries queries(shading.patches);
+    const Camera camera =
+        frame_scene(bounds_of(shading.patches), float(options.picture.width) / float(options.picture.height));
+    return render_picture(scene, queries, shading.environment, camera, options.picture, progress);
+}
+
+void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress& progress) {
+    s.tree =
+        clock.run(options.tree.is_species() ? "grow" : "load", [&] { return obtain_tree(options.tree, progress); });
+    progress.throw_if_stopped();
+    s.environment = clock.run(
+        "environment", [&] { return obtain_environment(options.surroundings, s.tree.origin, s.environment_report); });
+    s.patches = clock.run("patches", [&] {
+        PatchOptions patch_options;
+        patch_options.ground = obtain_ground(options.surroundings, s.environment, s.tree);
+        PatchScene scene = make_patches(s.tree, patch_options, &s.origins);
+        override_optics(options, scene);
+        validate(scene);
+        return scene;
+    });
+    progress.throw_if_stopped();
+    const std::unique_ptr<Transport> transport =
+        clock.run("transport", [&] { return make_transport(s.patches, s.tree, options.shading, progress); });
+    s.solution = clock.run("solve", [&] { return transport->solve(s.environment, progress); });
+    progress.throw_if_stopped();
+    if (!options.image.empty())
+        s.picture = clock.run("picture", [&] { return draw(s, options, progress); });
+    progress.throw_if_stopped();
+}
+
+void write_shaded_tree(const ShadeOptions& options, const Shading& s, Progress& progress) {
+    const Solution& solution = s.solution;
+    const ShadedAttributes attributes{.radiance_front = solution.radiance.front,
+                                      .radiance_back = solution.radiance.back,
+                                      .indirect_front = solution.indirect.front,
+                                      .indirect_back = solution.indirect.back,
+                                      .light_maps = solution.light_maps};
+    write_tree(options.output, s.tree, &attributes, {.split_sides = options.split_sides}, progress);
+}
+
+void write_picture(const ShadeOptions& options, const Image& radiance) {
+    if (lower_ending(options.image) == ".png")
+        save_image(options.image, tone_map(radiance, options.picture.exposure_stops),
+                   {.png_encoding = PngEncoding::as_is});
+    else
+        save_image(options.image, radiance);
+}
+
+void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
+    std::printf("%s: %s leaves, %s patches; %s\n", s.tree.name.c_str(), count_text(s.tree.leaves.size()).c_str(),
+                count_text(s.patches.patches.size()).c_str(), s.environment.description.c_str());
+    std::printf("%s: ", std::string(method_name(options.shading.method)).c_str());
+    if (s.solution.estimated_error)
+        std::printf("estimated error %.2g %%, ", 100 * *s.solution.estimated_error);
+    if (!s.solution.residuals.empty())
+        std::printf("%zu bounces, ", s.solution.residuals.size());
+    std::printf("%s kept for relighting\n", bytes_text(double(s.solution.transport_bytes)).c_str());
+    for (const WorkReport::Stage& stage : clock.stages())
+        std::printf("  %-12s %10s  (CPU %s)\n", stage.name.c_str(), duration_text(stage.wall_seconds).c_str(),
+                    duration_text(stage.cpu_seconds).c_str());
+    for (const std::filesystem::path& file : {options.output, options.image, options.report})
+        if (!file.empty())
+            std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
+                        bytes_text(double(std::filesystem::file_size(file))).c_str());
+}
+
+void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext& context) {
+    ShadingRecord record;
+    for (const CLI::Option* option : app.get_options([](const CLI::Option* o) { return o->count() > 0; }))
+        for (const std::string& value : option->results())
+            record.arguments.emplace_back(option->get_name(), value);
+    complete_shade_options(options);
+
+    const Stopwatch watch;
+    StageClock clock;
+    Shading shading;
+    shade(options, shading, clock, *context.progress);
+
+    const WritingFiles writing;
+    clock.run("write", [&] {
+        context.progress->begin("writing", 0);
+        if (!options.output.empty())
+            write_shaded_tree(options, shading, *context.progress);
+        if (shading.picture)
+            write_picture(options, *shading.picture);
+    });
+    record.tree = &shading.tree;
+    record.patches = &shading.patches;
+    record.environment = &shading.environment;
+    record.environment_report = shading.environment_report;
+    record.options = options.shading;
+    record.solution = &shading.solution;
+    record.work.stages = clock.stages();
+    record.cpu_seconds = watch.cpu();
+    record.wall_seconds = watch.wall();
+    const std::pair<const char*, const std::filesystem::path*> outputs[] = {
+        {"tree", &options.output}, {"picture", &options.image}, {"report", &options.report}};
+    for (const auto& [what, file] : outputs)
+        if (!file->empty())
+            record.outputs.emplace_back(what, file->string());
+    if (!options.report.empty())
+        write_file(options.report, shading_report(record).dump(2) + "\n");
+
+    context.progress->clear();
+    if (context.quiet)
+        return;
+    for (const std::string& warning : shading.solution.report.warnings)
+        std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
+    print_summary(options, shading, clock);
+}
+
+} // namespace
+
+Command shade_command(CLI::App& program) {
+    const auto options = std::make_shared<ShadeOptions>();
+    CLI::App* app = program.add_subcommand("shade", "Shade a tree: the light on both sides of every leaf");
+    app->footer("\nExample: kokage shade tree.glb --environment forest.hdr -o lit.glb --image lit.png\nWith none of "
+                "-o, --image and --report, all three are written here, called after the tree.");
+    add_shade_options(*app, *options);
+    return {app, [app, options](const CommandContext& context) { run_shade(*app, *options, context); }};
+}
+
+} // namespace kokage
