@@ -54,6 +54,8 @@ void SidePaths::extend_to(std::uint32_t paths, const PathTracer& tracer, Progres
             for (std::size_t s = 2 * p; s < 2 * p + 2; ++s)
                 for (int half = 0; half < 2; ++half)
                     for (std::uint32_t i = paths_of(p, half_paths_); i < paths_of(p, half_paths); ++i) {
+                        if (i % 1024 == 1023) // a side may have very many
+                            progress.throw_if_stopped();
                         PathNumbers numbers(hash64(seed_ ^ hash64(2 * s + std::size_t(half))), i);
                         PatchPoint point;
                         if (points_.sample(std::uint32_t(p), numbers, point))

@@ -49,7 +49,6 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
         patch_options.ground = obtain_ground(options.surroundings, s.environment, s.tree);
         PatchScene scene = make_patches(s.tree, patch_options, &s.origins);
         override_optics(options, scene);
-        validate(scene);
         return scene;
     });
     progress.throw_if_stopped();
