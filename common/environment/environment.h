@@ -14,14 +14,14 @@ struct DistantLight {
     struct Texel {
         glm::vec3 direction;
         glm::vec3 irradiance; ///< radiance x solid angle: what a surface facing it receives
-        float half_angle =
-            0; ///< of a cone with the solid angle of the pixel, or of the neighbouring pixels that it stands for
+        /// Of a cone with the solid angle of the pixel, or of the neighbouring pixels that it stands for.
+        float half_angle = 0;
     };
     std::string name;             ///< "sun", "region 3 of 12 (u 0.41, v 0.22)", ...
     glm::vec3 direction{0, 1, 0}; ///< towards the light; a region's energy-weighted mean
     float half_angle = 0; ///< radians; of the disc, or of the smallest cone around `direction` that holds the region
-    glm::vec3 irradiance{
-        0.f}; ///< radiance x solid angle; for a small light, what an unshadowed surface that faces it receives
+    /// Of a disc: on an unshadowed surface that faces it. Of a region: the sum of its texels, radiance x solid angle.
+    glm::vec3 irradiance{0.f};
     std::vector<Texel> texels; ///< empty for a disc
 };
 
