@@ -48,6 +48,10 @@ glm::vec3 cosine_direction(const glm::vec3& normal, glm::vec2 numbers) {
     return squared > 1e-8f ? sum / std::sqrt(squared) : normal;
 }
 
+/// A path's chance to go on is so many times the largest channel of its throughput. Measured in crowns of realistic and
+/// of bright leaves: 1 costs 20 % more rays for the same error in bright ones, 3 costs 5 % more in realistic ones.
+constexpr float kSurvival = 1.5f;
+
 /// Remainders of less contrast than this are not sampled by importance.
 constexpr double kLowContrast = 2.5;
 
@@ -198,7 +202,7 @@ struct PathTracer::Implementation {
             result.total += throughput * light(vertex, numbers, traced) / kPi;
             throughput *= scatter(vertex, numbers, direction);
             if (bounce >= options.roulette_after) {
-                const float survival = std::min(0.99f, largest(throughput) / unit);
+                const float survival = std::min(0.99f, kSurvival * largest(throughput) / unit);
                 if (!(numbers.independent() < survival))
                     break;
                 throughput /= survival;

@@ -11,12 +11,14 @@
 namespace kokage {
 
 struct PathTracerOptions {
-    int max_bounces = 0; ///< scatterings between light and receiver; 0 = all: paths end by Russian roulette alone
-    int roulette_after =
-        0; ///< scatterings before roulette begins; survival = largest channel of the throughput, at most 0.99
-    bool sample_remainder =
-        true; ///< also draw directions towards the bright parts of the remainder, as its contrast asks
-    std::vector<Optics> optics; ///< in place of the scene's (as long as those); empty = the scene's
+    /// Scatterings between light and receiver; 0 = all: paths end by Russian roulette alone.
+    int max_bounces = 0;
+    /// Scatterings before roulette begins. Survival follows the largest channel of the throughput, at most 0.99.
+    int roulette_after = 0;
+    /// Also draw directions towards the bright parts of the remainder, as often as its contrast asks for.
+    bool sample_remainder = true;
+    /// In place of the scene's, and as many; empty = the scene's.
+    std::vector<Optics> optics;
 };
 
 /// Ready to trace: ray queries plus the environment's sampling tables. Thread-safe. Queries and environment must
