@@ -27,6 +27,7 @@ struct ShadingOptions {
     int bands = 7;
     int max_bounces = 0; ///< 0 = until the residual is below a tenth of the asked error
     GatherRule gather = GatherRule::cosine;
+    bool for_hosts = false; ///< also what only hosts read: bent normals, light maps
     std::uint64_t seed = 1;
 };
 

@@ -74,11 +74,14 @@ std::vector<Rgb> BounceOperator::gather_ground(const std::vector<glm::vec3>& gro
 }
 
 std::vector<Rgb> BounceOperator::scatter(const OutsideLight& outside, const std::vector<Optics>& optics,
-                                         const SweepResult& light, int half) const {
+                                         const SweepResult& light, int half,
+                                         std::vector<Rgb>* irradiance_of_sides) const {
     const Links& links = transport_.links;
     const bool ground = !light.ground_excess.empty();
     const std::vector<Rgb> from_ground = ground ? gather_ground(light.ground_excess) : std::vector<Rgb>();
     std::vector<Rgb> scattered(light.radiance.size());
+    if (irradiance_of_sides)
+        irradiance_of_sides->resize(light.radiance.size());
     parallel_blocks(scene_.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
         const Rgb4 d;
         for (std::size_t patch = from; patch < to; ++patch) {
@@ -99,6 +102,9 @@ std::vector<Rgb> BounceOperator::scatter(const OutsideLight& outside, const std:
                     sum = hn::Max(hn::Zero(d), hn::MulAdd(hn::Load(d, &from_ground[side].r),
                                                           hn::Set(d, kPi * outside.down[side]), sum));
             }
+            if (irradiance_of_sides)
+                for (std::size_t k = 0; k < 2; ++k)
+                    hn::Store(irradiance[k], d, &(*irradiance_of_sides)[2 * patch + k].r);
             const Optics& optic = optics[scene_.patches[patch].optics];
             const glm::vec3 rho = optic.reflectance / kPi, tau = optic.transmittance / kPi;
             HWY_ALIGN const float reflectance[4] = {rho.x, rho.y, rho.z, 0},

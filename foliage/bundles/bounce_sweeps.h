@@ -50,8 +50,9 @@ class BounceOperator {
     SweepResult solve(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
                       const std::vector<Rgb>& start) const;
     /// One more scattering with the neighbours of one half of the directions only (0 or 1), or of both (-1).
+    /// `irradiance`, if given, receives E per side.
     std::vector<Rgb> scatter(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepResult& light,
-                             int half) const;
+                             int half, std::vector<Rgb>* irradiance = nullptr) const;
 
   private:
     std::vector<glm::vec3> light_ground(const OutsideLight& outside, const std::vector<Rgb>& radiance) const;

@@ -66,8 +66,9 @@ void face_sides(const Facets& facets, const glm::vec3& direction, FaceSides& sid
         sides.far_side[f] = front + front_is_near;
     }
     for (std::uint32_t f = facets.leaf_facet_count, face = f; f < facets.facets.size(); ++f, face += 2) {
-        sides.near_side[face] = sides.far_side[face + 1] = 2 * facets.facets[f].patch;
-        sides.far_side[face] = sides.near_side[face + 1] = kNoSide; // inside the wood
+        const Side front = 2 * facets.facets[f].patch;
+        sides.near_side[face] = sides.far_side[face + 1] = front;
+        sides.far_side[face] = sides.near_side[face + 1] = front + 1; // inside the wood
     }
 }
 
@@ -101,9 +102,13 @@ GroundProjection project_to_ground(const GroundGrid& grid, const Projection& pro
     return {origin, point(1, 0) - origin, point(0, 1) - origin, true};
 }
 
+/// `first_bark`: the first side of bark; odd sides from there on are the inside of wood. What walls see of each other
+/// in there is nobody's light and is left out; leaves that reach into the wood (most do, at their stalk) see the dark
+/// wall.
 void collect_links(const RasterScratch& raster, const Projection& projection, const FaceSides& sides,
-                   std::uint32_t face_mask, const std::optional<GroundGrid>& grid, std::uint32_t phase,
+                   std::uint32_t face_mask, Side first_bark, const std::optional<GroundGrid>& grid, std::uint32_t phase,
                    DirectionLinks& out) {
+    const auto inside_wood = [first_bark](Side side) { return side % 2 == 1 && side >= first_bark; };
     const GroundProjection on_ground = grid ? project_to_ground(*grid, projection) : GroundProjection{};
     for (int y = 0; y < projection.height; ++y)
         for (int x = 0; x < projection.width; ++x) {
@@ -115,12 +120,12 @@ void collect_links(const RasterScratch& raster, const Projection& projection, co
             for (std::uint32_t i = begin + 1; i < end; ++i) {
                 const std::uint32_t face = raster.sorted_keys[i] & face_mask;
                 const Side near_side = sides.near_side[face];
-                if (open != kNoSide && near_side != kNoSide)
+                if (!(inside_wood(open) && inside_wood(near_side)))
                     out.pairs.push_back({open, near_side});
                 open = sides.far_side[face];
             }
             constexpr std::uint32_t stride = GroundGrid::kStride;
-            if (on_ground.valid && open != kNoSide && (std::uint32_t(x) + phase) % stride == 0 &&
+            if (on_ground.valid && !inside_wood(open) && (std::uint32_t(x) + phase) % stride == 0 &&
                 (std::uint32_t(y) + phase / stride) % stride == 0) {
                 const glm::vec2 hit = on_ground.origin + float(x) * on_ground.along_u + float(y) * on_ground.along_v;
                 if (const int texel = grid->texel_at(hit.x, hit.y); texel >= 0)
@@ -214,6 +219,9 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
                 link_density = pixel_density(facets, settings.link_pixels);
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
 
+    const Side first_bark = facets.leaf_facet_count < facets.facets.size()
+                                ? 2 * facets.facets[facets.leaf_facet_count].patch
+                                : 2 * facets.patch_count;
     std::vector<DirectionLinks> collected(linked);
     std::vector<std::size_t> fragments(skies + linked, 0);
     transport.links.ground_pixel_area.resize(linked);
@@ -230,7 +238,7 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
             thread_local FaceSides sides;
             face_sides(facets, direction, sides);
             const auto phase = std::uint32_t(hash64(settings.seed * 977 + task));
-            collect_links(raster, projection, sides, face_mask, transport.ground, phase, collected[task]);
+            collect_links(raster, projection, sides, face_mask, first_bark, transport.ground, phase, collected[task]);
             transport.links.ground_pixel_area[task] =
                 float(GroundGrid::kStride * GroundGrid::kStride) / (link_density * link_density);
         } else {

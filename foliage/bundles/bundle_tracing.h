@@ -35,7 +35,6 @@ GroundGrid make_ground_grid(const Facets& facets, float height_m);
 
 /// Sides are numbered 2 x patch (front) and 2 x patch + 1 (back).
 using Side = std::uint32_t;
-inline constexpr Side kNoSide = 0xffffffffu;
 
 /// The neighbours of every side on all lines, one entry a line, in compressed rows; and its ends on the ground.
 /// Row of side s: entries [begin[s], begin[s+1]), of the first half of the directions before middle[s], of the second

@@ -1,85 +1,72 @@
 #include "foliage/bundles/bundles.h"
 
-#include "common/services/random.h"
 #include "common/services/stopwatch.h"
-#include "foliage/accuracy.h"
+#include "foliage/bundles/drawn_lights.h"
+#include "foliage/bundles/half_difference.h"
 #include "foliage/bundles/outside_light.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace kokage {
 namespace {
 
 using namespace bundles;
 
-bool same_place(const DistantLight& a, const DistantLight& b) {
-    auto same_texel = [](const DistantLight::Texel& x, const DistantLight::Texel& y) {
-        return x.direction == y.direction && x.irradiance == y.irradiance && x.half_angle == y.half_angle;
-    };
-    return a.direction == b.direction && a.half_angle == b.half_angle && a.irradiance == b.irradiance &&
-           std::equal(a.texels.begin(), a.texels.end(), b.texels.begin(), b.texels.end(), same_texel);
-}
-
 class BundlesTransport : public Transport {
   public:
-    BundlesTransport(const PatchScene& scene, const BundleEffort& effort, const ShadingOptions& options,
+    BundlesTransport(const PatchScene& scene, const BundleEffort& effort, const ShadingOptions& options, bool adaptive,
                      Progress& progress)
-        : scene_(scene), effort_(effort), options_(options), optics_(scene.optics) {
+        : scene_(scene), options_(options), adaptive_(adaptive), optics_(scene.optics) {
         Stopwatch watch;
         facets_ = make_facets(scene);
-        transport_ = trace_bundles(scene, facets_, effort.lines, progress);
-        bounces_ = std::make_unique<BounceOperator>(scene, transport_);
-        tracing_ = {"transport", watch.cpu(), watch.wall()};
+        pending_.stages.push_back({"facets", watch.cpu(), watch.wall()});
+        draw(effort, progress);
     }
 
     Solution solve(const Environment& environment, Progress& progress) override;
     void set_optics(const std::vector<Optics>& optics) override { optics_ = optics; }
-    std::size_t bytes() const override;
+    std::size_t bytes() const override { return transport_.bytes() + (lights_ ? lights_->bytes() : 0); }
 
   private:
-    struct CachedLight {
-        DistantLight light;
-        LitBeams beams;
+    struct Lit {
+        BeamLight beams;
+        SkyLight sky;
+        OutsideLight outside;
+        SweepResult light;
+        double sampling_error = 0;
+        std::vector<Rgb> irradiance;
     };
-    void trace_lights(const Environment& environment);
+
+    void draw(const BundleEffort& effort, Progress& progress);
+    Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
-    void fill(Solution& solution, const SweepResult& light, const OutsideLight& all, const BeamLight& beams) const;
+    void fill(Solution& solution, const Lit& lit) const;
+    void balance(Solution& solution, const Lit& lit) const;
 
     const PatchScene& scene_;
-    BundleEffort effort_;
     ShadingOptions options_;
+    bool adaptive_;
     std::vector<Optics> optics_;
+    BundleEffort effort_;
     Facets facets_;
     BundleTransport transport_;
     std::unique_ptr<BounceOperator> bounces_;
-    std::vector<CachedLight> lights_;
+    std::unique_ptr<DrawnLights> lights_;
     std::vector<Rgb> last_radiance_;
-    WorkReport::Stage tracing_;
-    bool tracing_reported_ = false;
+    WorkReport pending_; ///< of work since the last solution
 };
 
-void BundlesTransport::trace_lights(const Environment& environment) {
-    std::vector<CachedLight> kept;
-    for (const DistantLight& light : environment.distant_lights) {
-        const auto found = std::find_if(lights_.begin(), lights_.end(),
-                                        [&](const CachedLight& c) { return same_place(c.light, light); });
-        if (found != lights_.end()) {
-            kept.push_back(std::move(*found));
-            lights_.erase(found);
-            continue;
-        }
-        CachedLight cached{light, {}};
-        const std::uint64_t seed = hash64(options_.seed) + kept.size();
-        cached.beams.beams = make_beams(light, effort_.beams_per_light, seed);
-        std::vector<glm::vec3> directions;
-        for (const Beam& beam : cached.beams.beams)
-            directions.push_back(beam.direction_to_light);
-        cached.beams.visibility =
-            trace_beams(scene_, facets_, transport_.ground, directions, effort_.beam_pixels, seed);
-        kept.push_back(std::move(cached));
-    }
-    lights_ = std::move(kept);
+void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
+    Stopwatch watch;
+    effort_ = effort;
+    transport_ = trace_bundles(scene_, facets_, effort.lines, progress);
+    bounces_ = std::make_unique<BounceOperator>(scene_, transport_);
+    if (!lights_)
+        lights_ = std::make_unique<DrawnLights>(scene_, facets_, transport_.ground);
+    lights_->clear();
+    pending_.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
 }
 
 OutsideLight BundlesTransport::outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams,
@@ -87,11 +74,10 @@ OutsideLight BundlesTransport::outside(const SkyLight& sky, const SkyLight::PerS
     OutsideLight light;
     light.open = side.open;
     light.down = side.down;
-    light.irradiance = side.irradiance;
+    light.irradiance.resize(side.irradiance.size());
     for (std::size_t s = 0; s < light.irradiance.size(); ++s) {
-        const glm::vec3 from_lights =
-            half < 0 ? 0.5f * (beams.halves[0][s].vec() + beams.halves[1][s].vec()) : beams.halves[half][s].vec();
-        light.irradiance[s] = Rgb::from(light.irradiance[s].vec() + from_lights);
+        const glm::vec3 from_lights = half < 0 ? beams.mean(Side(s)) : beams.halves[half][s].vec();
+        light.irradiance[s] = Rgb::from(side.irradiance[s].vec() + from_lights);
     }
     light.near_radiance = sky.near_radiance;
     light.open_ground_irradiance = sky.open_ground_irradiance + beams.open_ground;
@@ -101,8 +87,38 @@ OutsideLight BundlesTransport::outside(const SkyLight& sky, const SkyLight::PerS
     return light;
 }
 
-void BundlesTransport::fill(Solution& solution, const SweepResult& light, const OutsideLight& all,
-                            const BeamLight& beams) const {
+BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Progress& progress, WorkReport& report) {
+    Stopwatch watch;
+    auto stage = [&](const char* name) {
+        report.stages.push_back({name, watch.cpu(), watch.wall()});
+        watch.restart();
+        progress.throw_if_stopped();
+    };
+    Lit lit;
+    lit.beams = lights_->light(environment, effort_, 0.02 * options_.error, options_.seed, progress, report);
+    stage("lights");
+    lit.sky = gather_sky(scene_, facets_, transport_, environment.remainder, lit.beams.open_ground);
+    lit.outside = outside(lit.sky, lit.sky.all, lit.beams, -1);
+    stage("sky");
+    SweepLimits limits;
+    limits.tolerance = effort_.tolerance;
+    limits.max_bounces = options_.max_bounces;
+    lit.light =
+        bounces_->solve(lit.outside, optics_, limits, limits.max_bounces > 0 ? std::vector<Rgb>() : last_radiance_);
+    stage("bounces");
+    std::vector<Rgb> irradiance[2], radiance[2];
+    for (int h = 0; h < 2; ++h)
+        radiance[h] =
+            bounces_->scatter(outside(lit.sky, lit.sky.halves[h], lit.beams, h), optics_, lit.light, h, &irradiance[h]);
+    lit.sampling_error = half_difference_error(scene_, radiance[0], radiance[1]);
+    lit.irradiance = std::move(irradiance[0]);
+    for (std::size_t s = 0; s < lit.irradiance.size(); ++s)
+        lit.irradiance[s] = Rgb::from(0.5f * (lit.irradiance[s].vec() + irradiance[1][s].vec()));
+    stage("error estimate");
+    return lit;
+}
+
+void BundlesTransport::fill(Solution& solution, const Lit& lit) const {
     const std::size_t patches = scene_.patches.size();
     for (SideRadiance* radiance : {&solution.radiance, &solution.indirect}) {
         radiance->front.resize(patches);
@@ -112,107 +128,85 @@ void BundlesTransport::fill(Solution& solution, const SweepResult& light, const 
     solution.sky_visibility_back.resize(patches);
     for (std::size_t p = 0; p < patches; ++p) {
         const Optics& optics = optics_[scene_.patches[p].optics];
-        const glm::vec3 front = 0.5f * (beams.halves[0][2 * p].vec() + beams.halves[1][2 * p].vec());
-        const glm::vec3 back = 0.5f * (beams.halves[0][2 * p + 1].vec() + beams.halves[1][2 * p + 1].vec());
-        solution.radiance.front[p] = light.radiance[2 * p].vec();
-        solution.radiance.back[p] = light.radiance[2 * p + 1].vec();
-        solution.indirect.front[p] = glm::max(
-            light.radiance[2 * p].vec() - (optics.reflectance * front + optics.transmittance * back) / kPi, 0.f);
-        solution.indirect.back[p] = glm::max(
-            light.radiance[2 * p + 1].vec() - (optics.reflectance * back + optics.transmittance * front) / kPi, 0.f);
-        solution.sky_visibility_front[p] = all.open[2 * p];
-        solution.sky_visibility_back[p] = all.open[2 * p + 1];
+        const Side front = Side(2 * p), back = front + 1;
+        const glm::vec3 lit_front = lit.beams.mean(front), lit_back = lit.beams.mean(back);
+        solution.radiance.front[p] = lit.light.radiance[front].vec();
+        solution.radiance.back[p] = lit.light.radiance[back].vec();
+        const glm::vec3 direct_front = (optics.reflectance * lit_front + optics.transmittance * lit_back) / kPi;
+        const glm::vec3 direct_back = (optics.reflectance * lit_back + optics.transmittance * lit_front) / kPi;
+        solution.indirect.front[p] = glm::max(solution.radiance.front[p] - direct_front, 0.f);
+        solution.indirect.back[p] = glm::max(solution.radiance.back[p] - direct_back, 0.f);
+        solution.sky_visibility_front[p] = lit.sky.all.open[front] - (scene_.ground ? lit.sky.all.down[front] : 0.f);
+        solution.sky_visibility_back[p] = lit.sky.all.open[back] - (scene_.ground ? lit.sky.all.down[back] : 0.f);
     }
 }
 
-/// Half the difference of two independent halves is as large, on average, as the error of their mean.
-double half_difference(const PatchScene& scene, const std::vector<Rgb>& a, const std::vector<Rgb>& b,
-                       const SideRadiance& mean) {
-    auto sides = [&](auto&& value) {
-        SideRadiance radiance;
-        radiance.front.resize(scene.patches.size());
-        radiance.back.resize(scene.patches.size());
-        for (std::size_t p = 0; p < scene.patches.size(); ++p) {
-            radiance.front[p] = value(2 * p);
-            radiance.back[p] = value(2 * p + 1);
+void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
+    const double to_square_metres = 1 / (facets_.scale * facets_.scale);
+    for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
+        const double area = facets_.patch_area[p] * to_square_metres;
+        const Optics& optics = optics_[scene_.patches[p].optics];
+        const int sides = scene_.patches[p].kind == PatchKind::bark ? 1 : 2; // the inside of bark is shut
+        for (int k = 0; k < sides; ++k) {
+            const std::size_t s = 2 * p + std::size_t(k);
+            solution.energy_in += area * luminance(lit.outside.irradiance[s].vec());
+            solution.energy_absorbed +=
+                area * luminance((1.f - optics.reflectance - optics.transmittance) * lit.irradiance[s].vec());
+            solution.energy_escaped += area * kPiDouble * lit.outside.open[s] * luminance(lit.light.radiance[s].vec());
         }
-        return leaf_side_radiance(scene, radiance);
-    };
-    const std::vector<glm::vec3> first = sides([&](std::size_t s) { return a[s].vec(); });
-    const std::vector<glm::vec3> second = sides([&](std::size_t s) { return b[s].vec(); });
-    const std::vector<glm::vec3> whole = leaf_side_radiance(scene, mean);
-    if (whole.empty())
-        return 0;
-    glm::dvec3 average(0.0), error(0.0);
-    for (const glm::vec3& value : whole)
-        average += glm::dvec3(value) / double(whole.size());
-    for (std::size_t i = 0; i < whole.size(); ++i)
-        for (int c = 0; c < 3; ++c)
-            if (const double floor = std::max(double(whole[i][c]), 0.05 * average[c]); floor > 0)
-                error[c] += 0.5 * std::abs(double(first[i][c]) - second[i][c]) / floor;
-    return (error.x + error.y + error.z) / (3 * double(whole.size()));
+    }
 }
 
 Solution BundlesTransport::solve(const Environment& environment, Progress& progress) {
+    constexpr int kMostAttempts = 4;
     Solution solution;
-    if (!tracing_reported_)
-        solution.report.stages.push_back(tracing_);
-    tracing_reported_ = true;
-    Stopwatch watch;
-    auto stage = [&](const char* name) {
-        solution.report.stages.push_back({name, watch.cpu(), watch.wall()});
-        watch.restart();
-        progress.throw_if_stopped();
-    };
-    trace_lights(environment);
-    BeamLight beams;
-    beams.halves[0].resize(2 * scene_.patches.size());
-    beams.halves[1].resize(2 * scene_.patches.size());
-    if (scene_.ground)
-        beams.ground.assign(GroundGrid::kSize * GroundGrid::kSize, glm::vec3(0.f));
-    for (const CachedLight& light : lights_)
-        add_beams(facets_, light.beams, beams);
-    stage("lights");
-    const SkyLight sky = gather_sky(scene_, facets_, transport_, environment.remainder, beams.open_ground);
-    stage("sky");
-    const OutsideLight all = outside(sky, sky.all, beams, -1);
-    SweepLimits limits;
-    limits.tolerance = effort_.tolerance;
-    limits.max_bounces = options_.max_bounces;
-    const SweepResult light = bounces_->solve(all, optics_, limits, last_radiance_);
-    solution.residuals = light.residuals;
-    stage("bounces");
-    fill(solution, light, all, beams);
-    const std::vector<Rgb> first = bounces_->scatter(outside(sky, sky.halves[0], beams, 0), optics_, light, 0);
-    const std::vector<Rgb> second = bounces_->scatter(outside(sky, sky.halves[1], beams, 1), optics_, light, 1);
-    solution.estimated_error = half_difference(scene_, first, second, solution.radiance);
-    last_radiance_ = light.radiance;
-    stage("error estimate");
+    solution.report = std::move(pending_);
+    pending_ = {};
+    Lit lit;
+    for (int attempt = 1;; ++attempt) {
+        lit = light(environment, progress, solution.report);
+        const double ratio = lit.sampling_error / options_.error;
+        if (!adaptive_ || ratio <= 1.05 || attempt == kMostAttempts)
+            break;
+        const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
+        const double wanted = directions * std::min(1.1 * ratio * ratio, 16.0);
+        const BundleEffort more = effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), options_.seed);
+        if (more.lines.sky_directions + more.lines.link_directions <= directions)
+            break;
+        draw(more, progress);
+        solution.report.append(pending_);
+        pending_ = {};
+        last_radiance_ = lit.light.radiance;
+    }
+    fill(solution, lit);
+    balance(solution, lit);
+    solution.residuals = lit.light.residuals;
+    solution.estimated_error = lit.sampling_error;
+    if (options_.for_hosts)
+        solution.bent_normal = mean_open_directions(facets_, transport_);
+    last_radiance_ = std::move(lit.light.radiance);
     solution.transport_bytes = bytes();
-    solution.report.counts = {{"patches", scene_.patches.size()},
-                              {"links", transport_.links.neighbours.size()},
-                              {"fragments", transport_.fragments}};
+    auto count = [&](const char* name, std::uint64_t value) { solution.report.counts.push_back({name, value}); };
+    count("patches", scene_.patches.size());
+    count("line directions", transport_.sky_lines.directions.size() + transport_.link_lines.directions.size());
+    count("fragments", transport_.fragments);
+    count("links", transport_.links.neighbours.size());
+    count("sweeps", solution.residuals.size());
     return solution;
-}
-
-std::size_t BundlesTransport::bytes() const {
-    std::size_t total = transport_.bytes();
-    for (const CachedLight& light : lights_)
-        total += light.beams.visibility.open.near_end.size() + light.beams.beams.size() * sizeof(Beam);
-    return total;
 }
 
 } // namespace
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress) {
-    return std::make_unique<BundlesTransport>(scene, effort, options, progress);
+    return std::make_unique<BundlesTransport>(scene, effort, options, false, progress);
 }
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree&, const ShadingOptions& options,
                                                   Progress& progress) {
-    BundleEffort effort;
-    return make_bundles_transport(scene, effort, options, progress);
+    const int directions = options.effort > 0 ? options.effort : directions_for_error(options.error);
+    const BundleEffort effort = effort_of_directions(directions, options.seed);
+    return std::make_unique<BundlesTransport>(scene, effort, options, options.effort == 0, progress);
 }
 
 } // namespace kokage

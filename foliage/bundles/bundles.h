@@ -1,21 +1,19 @@
 #pragma once
 // The `bundles` method: line bundles, solved in full as a sparse operator (DESIGN 4).
-#include "foliage/bundles/bundle_tracing.h"
+//
+//   facets -> bundle tracing -> [sky + drawn lights = outside light] -> bounce sweeps -> solution
+//             (who sees whom)   (per environment)                      (per environment or optics)
+#include "foliage/bundles/effort.h"
 #include "foliage/method.h"
 
 namespace kokage {
 
-/// Everything that `--effort` and `--error` decide for `bundles`.
-struct BundleEffort {
-    bundles::BundleSettings lines;
-    int beams_per_light = 4;  ///< for one light; many lights share them out by power
-    float beam_pixels = 64;   ///< mean pixels a leaf
-    double tolerance = 0.001; ///< of the sweeps
-};
-
+/// options.effort = directions of lines, or as many as options.error asks for: the solution's own estimate decides, and
+/// the first solve may draw the bundles again with more. Below what one radiance a leaf side can reach, leaves are
+/// divided.
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree& tree,
                                                   const ShadingOptions& options, Progress& progress);
-/// With the effort given outright (benchmarks, tests).
+/// With the effort given outright (tests).
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress);
 

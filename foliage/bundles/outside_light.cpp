@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace kokage::bundles {
 namespace {
@@ -138,42 +139,28 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
     return sky;
 }
 
-void add_beams(const Facets& facets, const LitBeams& light, BeamLight& sum) {
-    const std::size_t count = light.beams.size();
-    parallel_blocks(facets.facets.size(), 4096, [&](std::size_t from, std::size_t to) {
-        for (std::size_t f = from; f < to; ++f) {
-            const Facet& facet = facets.facets[f];
-            const float share = facet.area / facets.patch_area[facet.patch];
-            for (std::size_t beam = 0; beam < count; ++beam) {
-                const std::uint8_t open = light.visibility.open.near_row(beam)[f];
-                if (open == 0 || open == OpenFractions::kUnseen)
-                    continue;
-                const glm::vec3& to_light = light.beams[beam].direction_to_light;
-                Side side = 2 * facet.patch;
-                float projected = 0;
-                if (facet.bark) {
-                    projected = facet.projected_share(to_light);
-                } else {
-                    const float cosine = glm::dot(facet.normal, to_light);
-                    projected = std::abs(cosine);
-                    side += cosine < 0;
-                }
-                const float weight = share * projected * float(open) / 254;
-                Rgb& target = sum.halves[beam & 1][side];
-                target.r += weight * light.beams[beam].irradiance.x;
-                target.g += weight * light.beams[beam].irradiance.y;
-                target.b += weight * light.beams[beam].irradiance.z;
-            }
-        }
-    });
-    for (std::size_t beam = 0; beam < count; ++beam) {
-        const glm::vec3 on_ground =
-            0.5f * light.beams[beam].irradiance * std::max(light.beams[beam].direction_to_light.y, 0.f);
-        sum.open_ground += on_ground;
-        if (!light.visibility.ground_shadow.empty())
-            for (std::size_t texel = 0; texel < sum.ground.size(); ++texel)
-                sum.ground[texel] += (1 - light.visibility.ground_shadow[beam][texel]) * on_ground;
+std::vector<glm::vec3> mean_open_directions(const Facets& facets, const BundleTransport& transport) {
+    // Gathering "radiance" that is the direction it comes from gives the mean open direction.
+    std::vector<EndSums> sums(facets.facets.size());
+    for (auto [lines, open] : {std::pair(&transport.sky_lines, &transport.sky_open),
+                               std::pair(&transport.link_lines, &transport.link_open)}) {
+        EndRadiance directions{lines->directions, lines->directions};
+        for (glm::vec3& up : directions.near_end)
+            up = -up;
+        gather_ends(facets, lines->directions, *open, directions, 0, lines->directions.size(), sums);
     }
+    std::vector<glm::vec3> means(facets.patch_count, glm::vec3(0.f));
+    for (std::size_t f = 0; f < sums.size(); ++f)
+        if (sums[f].weight > 0)
+            means[facets.facets[f].patch] +=
+                facets.facets[f].area / sums[f].weight *
+                glm::vec3(sums[f].front[0] + sums[f].back[0], sums[f].front[1] + sums[f].back[1],
+                          sums[f].front[2] + sums[f].back[2]);
+    for (std::uint32_t patch = 0; patch < facets.patch_count; ++patch) {
+        const float length = glm::length(means[patch]);
+        means[patch] = length > 1e-6f * facets.patch_area[patch] && length > 0 ? means[patch] / length : glm::vec3(0.f);
+    }
+    return means;
 }
 
 } // namespace kokage::bundles

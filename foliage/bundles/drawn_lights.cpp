@@ -1,0 +1,174 @@
+#include "foliage/bundles/drawn_lights.h"
+
+#include "common/services/parallel.h"
+#include "common/services/random.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+namespace kokage::bundles {
+namespace {
+
+/// The same place and shape; colour and strength may differ (for regions, which hold both in their texels, they may
+/// not).
+bool same_shape(const DistantLight& a, const DistantLight& b) {
+    auto same_texel = [](const DistantLight::Texel& x, const DistantLight::Texel& y) {
+        return x.direction == y.direction && x.irradiance == y.irradiance && x.half_angle == y.half_angle;
+    };
+    return a.direction == b.direction && a.half_angle == b.half_angle &&
+           std::equal(a.texels.begin(), a.texels.end(), b.texels.begin(), b.texels.end(), same_texel);
+}
+
+glm::vec3 ratio(const glm::vec3& a, const glm::vec3& b) {
+    glm::vec3 result(0.f);
+    for (int c = 0; c < 3; ++c)
+        result[c] = b[c] > 0 ? a[c] / b[c] : 0.f;
+    return result;
+}
+
+} // namespace
+
+DrawnLights::DrawnLights(const PatchScene& scene, const Facets& facets, const std::optional<GroundGrid>& ground)
+    : scene_(scene), facets_(facets), ground_(ground) {}
+
+void DrawnLights::clear() {
+    distant_.clear();
+    points_.clear();
+}
+
+const DrawnLights::Distant& DrawnLights::draw(const DistantLight& light, const LightEffort& effort,
+                                              std::vector<Distant>& kept, std::uint64_t seed) {
+    const auto found =
+        std::find_if(distant_.begin(), distant_.end(), [&](const Distant& d) { return same_shape(d.light, light); });
+    if (found != distant_.end()) {
+        kept.push_back(std::move(*found));
+        distant_.erase(found);
+        return kept.back();
+    }
+    Distant drawn;
+    drawn.light = light;
+    // A disc is drawn in white, so that a change of its colour needs nothing new.
+    if (light.texels.empty())
+        drawn.light.irradiance = glm::vec3(1.f);
+    drawn.beams = make_beams(drawn.light, effort.beams, seed);
+    std::vector<glm::vec3> directions;
+    for (const Beam& beam : drawn.beams)
+        directions.push_back(beam.direction_to_light);
+    drawn.visibility = trace_beams(scene_, facets_, ground_, directions, effort.pixels, seed);
+    drawn_beams_ += directions.size();
+    kept.push_back(std::move(drawn));
+    return kept.back();
+}
+
+void DrawnLights::add(const Distant& drawn, const glm::vec3& scale, BeamLight& sum) const {
+    const std::size_t count = drawn.beams.size();
+    std::vector<glm::vec3> irradiance(count);
+    for (std::size_t beam = 0; beam < count; ++beam)
+        irradiance[beam] = scale * drawn.beams[beam].irradiance;
+    parallel_blocks(facets_.patch_count, 4096, [&](std::size_t from, std::size_t to) {
+        for (std::uint32_t f = facets_.patch_first_facet[from]; f < facets_.patch_first_facet[to]; ++f) {
+            const Facet& facet = facets_.facets[f];
+            const float share = facet.area / facets_.patch_area[facet.patch] / 254;
+            for (std::size_t beam = 0; beam < count; ++beam) {
+                const std::uint8_t open = drawn.visibility.open.near_row(beam)[f];
+                if (open == 0 || open == OpenFractions::kUnseen)
+                    continue;
+                const glm::vec3& to_light = drawn.beams[beam].direction_to_light;
+                const float cosine = glm::dot(facet.normal, to_light);
+                const float projected = facet.bark ? facet.projected_share(to_light) : std::abs(cosine);
+                const Side side = 2 * facet.patch + Side(!facet.bark && cosine < 0);
+                const glm::vec3 received = share * projected * float(open) * irradiance[beam];
+                Rgb& target = sum.halves[beam & 1][side];
+                target = Rgb::from(target.vec() + received);
+            }
+        }
+    });
+    for (std::size_t beam = 0; beam < count; ++beam) {
+        const glm::vec3 on_ground = 0.5f * irradiance[beam] * std::max(drawn.beams[beam].direction_to_light.y, 0.f);
+        sum.open_ground += on_ground;
+        if (ground_)
+            for (std::size_t texel = 0; texel < sum.ground.size(); ++texel)
+                sum.ground[texel] += (1 - drawn.visibility.ground_shadow[beam][texel]) * on_ground;
+    }
+}
+
+void DrawnLights::add(const PointTransfer& transfer, const glm::vec3& intensity, BeamLight& sum) const {
+    for (int h = 0; h < 2; ++h)
+        for (std::size_t patch = 0; patch < transfer.halves[h].size(); ++patch)
+            for (int k = 0; k < 2; ++k) {
+                if (k == 1 && scene_.patches[patch].kind == PatchKind::bark)
+                    continue; // inside the wood
+                Rgb& target = sum.halves[h][2 * patch + std::size_t(k)];
+                target = Rgb::from(target.vec() + transfer.halves[h][patch][k] * intensity);
+            }
+    for (std::size_t texel = 0; texel < sum.ground.size(); ++texel)
+        sum.ground[texel] += transfer.ground[texel] * intensity;
+}
+
+void DrawnLights::light_points(const Environment& environment, const BundleEffort& effort, std::uint64_t seed,
+                               BeamLight& sum, WorkReport& report) {
+    std::vector<PointTransfer> kept;
+    std::uint64_t rays = 0;
+    for (const PointLight& light : environment.point_lights) {
+        const auto found = std::find_if(points_.begin(), points_.end(),
+                                        [&](const PointTransfer& p) { return p.position == light.position; });
+        if (found != points_.end()) {
+            kept.push_back(std::move(*found));
+            points_.erase(found);
+        } else {
+            if (!queries_)
+                queries_ = std::make_unique<RayQueries>(scene_);
+            // A ray costs as much as a few pixels: an eighth of the pixels of a distant light, shared among the lamps.
+            const int samples = std::max(4, effort.light_samples / 8 / int(environment.point_lights.size()));
+            kept.push_back(
+                trace_point_light(*queries_, facets_, ground_, light.position, samples, hash64(seed + kept.size())));
+            rays += kept.back().rays;
+        }
+        add(kept.back(), light.intensity, sum);
+    }
+    points_ = std::move(kept);
+    if (rays > 0)
+        report.counts.push_back({"rays", rays});
+}
+
+BeamLight DrawnLights::light(const Environment& environment, const BundleEffort& effort, double negligible,
+                             std::uint64_t seed, Progress& progress, WorkReport& report) {
+    BeamLight sum;
+    for (auto& half : sum.halves)
+        half.resize(2 * scene_.patches.size());
+    if (ground_)
+        sum.ground.assign(GroundGrid::kSize * GroundGrid::kSize, glm::vec3(0.f));
+    const LightPlan plan = plan_lights(environment, effort, negligible);
+    if (plan.merged > 0)
+        report.skips.push_back({std::to_string(plan.merged) + " weak lights merged into their neighbours",
+                                "together they give " + std::to_string(100 * plan.merged_share) + " % of the light",
+                                std::to_string(2 * plan.merged) + " rasters"});
+    drawn_beams_ = 0;
+    std::vector<Distant> kept;
+    kept.reserve(plan.drawn.size());
+    for (const LightEffort& planned : plan.drawn) {
+        progress.throw_if_stopped();
+        const DistantLight& light = environment.distant_lights[planned.light];
+        if (!(luminance(planned.irradiance) > 0))
+            continue;
+        const Distant& drawn = draw(light, planned, kept, hash64(seed) + planned.light);
+        add(drawn, ratio(planned.irradiance, drawn.light.irradiance), sum);
+    }
+    distant_ = std::move(kept);
+    report.counts.push_back({"light rasters", drawn_beams_});
+    light_points(environment, effort, seed, sum, report);
+    return sum;
+}
+
+std::size_t DrawnLights::bytes() const {
+    std::size_t total = 0;
+    for (const Distant& light : distant_)
+        total += light.visibility.open.near_end.size() + light.beams.size() * sizeof(Beam) +
+                 light.visibility.ground_shadow.size() * GroundGrid::kSize * GroundGrid::kSize * sizeof(float);
+    for (const PointTransfer& point : points_)
+        total += 2 * point.halves[0].size() * sizeof(glm::vec2) + point.ground.size() * sizeof(float);
+    return total;
+}
+
+} // namespace kokage::bundles

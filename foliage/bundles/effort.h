@@ -1,0 +1,43 @@
+#pragma once
+// How much work an asked error needs, and which lights are worth how much of it.
+#include "common/environment/environment.h"
+#include "foliage/bundles/bundle_tracing.h"
+
+namespace kokage {
+
+/// Everything that `--effort` and `--error` decide for `bundles`.
+struct BundleEffort {
+    bundles::BundleSettings lines;
+    int light_samples =
+        256; ///< pixels a leaf, over all beams of one light that gives all the light; lights share them by irradiance
+    double tolerance = 0.001; ///< of the sweeps
+};
+
+namespace bundles {
+
+/// The effort of `directions` lines: 4 of 5 parts only see their ends, links and lights in the measured best proportion
+/// (variances of the three divide by their costs; the benchmark's 30k crown).
+BundleEffort effort_of_directions(int directions, std::uint64_t seed);
+/// The directions that a sampling error (an MRE) is expected to need; the solution's own estimate then decides.
+int directions_for_error(double sampling_error);
+
+/// How one distant light is drawn.
+struct LightEffort {
+    std::size_t light = 0; ///< index in Environment::distant_lights
+    int beams = 2;
+    float pixels = 4;          ///< a leaf and beam
+    glm::vec3 irradiance{0.f}; ///< its own and that of lights that were merged into it
+};
+
+struct LightPlan {
+    std::vector<LightEffort> drawn;
+    std::size_t merged = 0;  ///< lights too weak to be drawn by themselves
+    double merged_share = 0; ///< of all irradiance
+};
+
+/// Shares samples among lights by irradiance (which makes the summed variance least); lights that together give less
+/// than `negligible` of all light are merged into their nearest neighbours.
+LightPlan plan_lights(const Environment& environment, const BundleEffort& effort, double negligible);
+
+} // namespace bundles
+} // namespace kokage
