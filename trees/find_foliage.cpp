@@ -1,6 +1,7 @@
 #include "trees/find_foliage.h"
 
 #include "common/services/error.h"
+#include "trees/green_parts.h"
 
 #include <algorithm>
 #include <array>
@@ -27,27 +28,6 @@ constexpr std::array kFoliageWords = {"leaf",  "leav",   "foliage", "needle", "b
                                       "crown", "canopy", "folha",   "blatt",  "feuille", "grass", "fern"};
 constexpr std::array kWoodWords = {"bark", "wood", "trunk", "branch", "stem", "twig", "root", "log", "stump", "brown"};
 constexpr std::array kColorWords = {"green", "autumn", "fall"};
-
-/// Mean linear colour of a material over its texture, weighted by alpha where there is one.
-glm::vec3 mean_color(const GltfMaterial& material) {
-    glm::dvec3 sum(0.0);
-    double weight = 0;
-    if (material.base_color_texture) {
-        const Image& color = *material.base_color_texture->color;
-        const Image* alpha = material.base_color_texture->alpha.get();
-        const std::size_t count = std::size_t(color.width) * std::size_t(color.height);
-        for (std::size_t i = 0; i < count; ++i) {
-            const double w = alpha ? double(alpha->pixels[i]) : 1.0;
-            sum += w * glm::dvec3(color.pixels[3 * i], color.pixels[3 * i + 1], color.pixels[3 * i + 2]);
-            weight += w;
-        }
-    }
-    return glm::vec3(material.base_color) * (weight > 0 ? glm::vec3(sum / weight) : glm::vec3(1.f));
-}
-
-bool is_green(const glm::vec3& color) {
-    return color.g > 1.05f * color.r && color.g > 1.05f * color.b;
-}
 
 std::string display_name(const GltfMaterial& material, int index) {
     return material.name.empty() ? "material " + std::to_string(index) : "'" + material.name + "'";
@@ -98,6 +78,33 @@ Verdict judge_material(const GltfMaterial& material) {
     return {};
 }
 
+/// The last resort, mesh by mesh: green meshes are foliage, others bark. A mesh that is both is cut in two, unless
+/// foliage was found in some better way.
+Verdict judge_by_color(GltfScene& scene, int material, bool decided, std::vector<TreePartKind>& kinds) {
+    std::size_t foliage = 0, bark = 0, cut = 0;
+    const std::size_t meshes = scene.meshes.size();
+    for (std::size_t m = 0; m < meshes; ++m) {
+        if (scene.meshes[m].material != material)
+            continue;
+        const std::vector<bool> green = green_triangles(scene.meshes[m], scene.materials[std::size_t(material)]);
+        const double share = green_share(scene.meshes[m], green);
+        if (!decided && share > 0.05 && share < 0.95) {
+            scene.meshes.push_back(take_green(scene.meshes[m], green));
+            kinds.push_back(TreePartKind::foliage);
+            kinds[m] = TreePartKind::bark;
+            ++cut;
+        } else {
+            kinds[m] = share > 0.5 ? TreePartKind::foliage : TreePartKind::bark;
+            ++(share > 0.5 ? foliage : bark);
+        }
+    }
+    if (cut > 0)
+        return {TreePartKind::foliage, "where it is green; the rest is bark"};
+    if (foliage > 0)
+        return {TreePartKind::foliage, bark > 0 ? "its green meshes; the others are bark" : "its green colour"};
+    return {TreePartKind::bark, decided ? "nothing speaks of leaves" : "its colour is not green"};
+}
+
 } // namespace
 
 bool names_wood(const std::string& name) {
@@ -107,7 +114,7 @@ bool names_foliage(const std::string& name) {
     return holds_any(name, kFoliageWords) || (holds_any(name, kColorWords) && !names_wood(name));
 }
 
-FoundFoliage find_foliage(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
+FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
     if (!named.empty())
         return judge_by_user(scene, named, path);
     FoundFoliage found;
@@ -132,20 +139,15 @@ FoundFoliage find_foliage(const GltfScene& scene, const std::vector<std::string>
         if (foliage != wood)
             verdict = {foliage ? TreePartKind::foliage : TreePartKind::bark, "the name of its mesh"};
     }
-    const bool decided = any_foliage();
-    for (auto& [index, verdict] : verdicts) {
-        const GltfMaterial& material = scene.materials[std::size_t(index)];
-        if (verdict.rule.empty()) {
-            const bool green = is_green(mean_color(material));
-            verdict = {green ? TreePartKind::foliage : TreePartKind::bark, green     ? "its green colour"
-                                                                           : decided ? "nothing speaks of leaves"
-                                                                                     : "its colour is not green"};
-        }
-        found.notes.push_back("material " + display_name(material, index) + " is " +
-                              (verdict.kind == TreePartKind::foliage ? "foliage" : "bark") + ": " + verdict.rule);
-    }
     for (const GltfMesh& mesh : scene.meshes)
         found.kinds.push_back(verdicts.at(mesh.material).kind);
+    const bool decided = any_foliage();
+    for (auto& [index, verdict] : verdicts) {
+        if (verdict.rule.empty())
+            verdict = judge_by_color(scene, index, decided, found.kinds);
+        found.notes.push_back("material " + display_name(scene.materials[std::size_t(index)], index) + " is " +
+                              (verdict.kind == TreePartKind::foliage ? "foliage" : "bark") + ": " + verdict.rule);
+    }
     return found;
 }
 

@@ -10,8 +10,10 @@ struct FoundFoliage {
     std::vector<std::string> notes;  ///< by which rule each material was judged
 };
 
-/// `named`: the user's choice, may be empty. Throws InputError (the file's names listed) if a name fits nothing.
-FoundFoliage find_foliage(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path);
+/// By alpha, transmission, names of materials, then of meshes, then colour; a mesh that holds green leaves and bark in
+/// one material is cut in two (a mesh is added to the scene). `named`: the user's choice, may be empty. Throws
+/// InputError (the file's names listed) if a name fits nothing.
+FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& named, const std::string& path);
 
 /// True if a name speaks of leaves ("leaves", "Needles_02", "DarkGreen"), or of wood ("bark", "Trunk", "woodBirch").
 bool names_foliage(const std::string& name);

@@ -11,12 +11,19 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 #include <map>
 #include <numeric>
 #include <set>
 
 namespace kokage {
 namespace {
+
+std::string metres_text(float metres) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%.3g m", double(metres));
+    return text;
+}
 
 double area_of(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
     const glm::dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
@@ -268,7 +275,7 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
         tree.notes.push_back(
             std::to_string(leaf_count) +
             " leaves: connected foliage, cut where it turns by more than 30 degrees or is larger than " +
-            std::to_string(leaf_radius) + " m in radius");
+            metres_text(leaf_radius) + " in radius");
 
     // Bark and branching.
     for (PartBuilder& builder : parts)
