@@ -1,11 +1,17 @@
 #include "common/trace/remainder_sampler.h"
+#include "common/services/error.h"
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace kokage {
 
 RemainderSampler::RemainderSampler(const Image& remainder) : remainder_(remainder) {
+    if (remainder.width < 1 || remainder.height < 1 || remainder.channels < 3)
+        throw InputError("environment: the remainder is " + std::to_string(remainder.width) + " x " +
+                         std::to_string(remainder.height) + " pixels of " + std::to_string(remainder.channels) +
+                         " channels; it must be at least one pixel of RGB");
     const float* first = remainder.pixels.data();
     constant_ = true;
     for (std::size_t i = 0; i + 2 < remainder.pixels.size() && constant_; i += std::size_t(remainder.channels))

@@ -10,7 +10,8 @@ namespace kokage {
 /// Thread-safe.
 class RemainderSampler {
   public:
-    /// `remainder` (lat-long RGB) must outlive the sampler.
+    /// `remainder` (lat-long RGB) must outlive the sampler. Throws InputError if it has no pixel or less than 3
+    /// channels.
     explicit RemainderSampler(const Image& remainder);
 
     /// What sample() drew.

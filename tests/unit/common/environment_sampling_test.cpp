@@ -1,4 +1,5 @@
 // Choosing directions of the remainder and lights: densities against histograms, estimates against plain sums.
+#include "common/services/error.h"
 #include "common/trace/light_sampler.h"
 #include "common/trace/remainder_sampler.h"
 #include "tests/unit/common/scene_builders.h"
@@ -71,6 +72,12 @@ TEST(RemainderSampler, LargeImagesAreSampledByCells) {
         estimate += double(sampler.radiance(sample.direction).g / sample.density) / draws;
     }
     EXPECT_NEAR(estimate, exact, 0.02 * exact);
+}
+
+TEST(RemainderSampler, RefusesAnImageWithoutPixels) {
+    const Image none, grey(4, 2, 1);
+    EXPECT_THROW(RemainderSampler{none}, InputError);
+    EXPECT_THROW(RemainderSampler{grey}, InputError);
 }
 
 TEST(RemainderSampler, ContrastOfConstantAndBlack) {
