@@ -12,7 +12,8 @@ namespace kokage {
 double mean_leaf_area(const GrowthParameters& p) {
     const double spread =
         p.leaf_length_spread; // lengths are uniform in mean (1 +- spread): mean square = 1 + spread^2/3
-    return leaf_shape_area(p.leaf_detail) * p.leaf_width * p.leaf_length * p.leaf_length * (1 + spread * spread / 3);
+    const double shape = p.leaf_form == LeafForm::alpha ? leaf_mask_area() : leaf_shape_area(p.leaf_detail);
+    return shape * p.leaf_width * p.leaf_length * p.leaf_length * (1 + spread * spread / 3);
 }
 
 Crown::Crown(const GrowthParameters& p)

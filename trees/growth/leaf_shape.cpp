@@ -7,11 +7,12 @@
 namespace kokage {
 namespace {
 
-/// Half-width of an oak leaf along its length: an obovate blade with rounded lobes that grow towards its upper third.
+/// Half-width of an oak leaf along its length: an obovate blade with three round lobes a side and one at the tip, and
+/// narrow bays that reach almost halfway to the midrib.
 float half_width(float y) {
-    const float blade = 0.5f * std::pow(std::sin(kPi * std::pow(y, 1.35f)), 0.75f); // widest at y = 0.6
-    const float lobes = 0.5f + 0.5f * std::cos(2 * kPi * (4.f * y - 0.42f));        // four lobes and the tip
-    return blade * (0.62f + 0.38f * std::pow(lobes, 0.8f));
+    const float blade = 0.5f * std::pow(std::sin(kPi * std::pow(y, 1.35f)), 0.7f); // widest at y = 0.6
+    const float lobes = std::abs(std::cos(4 * kPi * y));                           // 1 at y = 1/4, 1/2, 3/4, 1
+    return blade * (0.56f + 0.44f * std::pow(lobes, 0.8f));
 }
 
 /// Mirrors the right side (x > 0, from base to tip) and triangulates each side by itself, in a strip from base to tip.
@@ -38,7 +39,9 @@ LeafShape from_right_side(const std::vector<glm::vec2>& right, const std::vector
 
 /// Round lobes: rows of three vertices (left edge, midrib, right edge) at the lobes and at the bays between them.
 LeafShape fine_shape() {
-    const std::array<float, 8> heights = {0.105f, 0.23f, 0.355f, 0.48f, 0.605f, 0.73f, 0.855f, 0.95f};
+    // Two rows on every lobe, one in every bay.
+    const std::array<float, 11> heights = {0.125f, 0.21f, 0.29f, 0.375f, 0.46f, 0.54f,
+                                           0.625f, 0.71f, 0.79f, 0.875f, 0.94f};
     LeafShape shape;
     shape.outline = {{0, 0}, {0, 1}}; // base 0, tip 1
     for (const float y : heights) {
@@ -78,6 +81,14 @@ double leaf_shape_area(int detail) {
         const glm::dvec2 a(shape.outline[t.x]), b(shape.outline[t.y]), c(shape.outline[t.z]);
         area += 0.5 * std::abs((b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x));
     }
+    return area;
+}
+
+double leaf_mask_area() {
+    constexpr int rows = 512;
+    double area = 0;
+    for (int i = 0; i < rows; ++i)
+        area += 2.0 * half_width((float(i) + 0.5f) / rows) / rows;
     return area;
 }
 

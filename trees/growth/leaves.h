@@ -16,11 +16,14 @@ struct LeafShape {
     std::vector<glm::uvec3> triangles; ///< counter-clockwise; none crosses the midrib x = 0
 };
 
-/// detail 0: a kite (2 triangles), 1: lobed (8), 2: round lobes (about 30).
+/// detail 0: a kite (2 triangles), 1: lobed (8), 2: round lobes (44).
 const LeafShape& leaf_shape(int detail);
 /// Area of the shape in its own unit square.
 double leaf_shape_area(int detail);
-/// True inside the finest shape; uv as on the leaf: u across, v from the tip (0) to the base (1).
+/// Area of the outline that alpha cards show, in the same unit square.
+double leaf_mask_area();
+/// True inside the outline that alpha cards show, which the finest shape follows; uv as on the leaf: u across, v from
+/// the tip (0) to the base (1).
 bool inside_leaf_shape(glm::vec2 uv);
 
 /// All leaves as one foliage part (with uvs: u across, v = 0 at the tip), and their centres.

@@ -71,7 +71,7 @@ std::shared_ptr<const Image> leaf_color(const glm::vec3& mean) {
             const float u = std::abs((float(px) + 0.5f) / float(leaf_size) - 0.5f),
                         y = 1 - (float(py) + 0.5f) / float(leaf_size);
             const float midrib = std::exp(-std::pow(u / (0.012f + 0.012f * (1 - y)), 2.f));
-            const float along_vein = 4 * (y - 0.75f * u) - 0.05f; // veins rise from the midrib, one into each lobe
+            const float along_vein = 4 * (y - 0.55f * u); // veins rise from the midrib, one into each lobe
             const float off_vein = std::abs(along_vein - std::round(along_vein)) / 4;
             const float vein = 0.6f * std::exp(-std::pow(off_vein / 0.009f, 2.f));
             const float mottle = 0.86f + 0.28f * tiling_noise(float(px) / 6, float(py) / 6, 64, 64, 11);

@@ -71,7 +71,7 @@ const std::vector<Entry>& entries() {
          true,
          [](const P& p) { return double(p.leaf_detail); },
          [](P& p, double v) { p.leaf_detail = int(v); },
-         "Triangles of an outline leaf: 2 (a kite), 8 (lobed) or about 30 (round lobes).",
+         "Triangles of an outline leaf: 2 (a kite), 8 (lobed) or 44 (round lobes).",
          {"kite", "lobed", "fine"}},
         real("leaves_per_shoot", &P::leaves_per_shoot, "", 1, 60,
              "Mean number of leaves in a cluster at a shoot's end."),

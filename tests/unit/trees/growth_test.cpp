@@ -2,6 +2,8 @@
 #include "common/services/parallel.h"
 #include "tests/unit/trees/growth_shape.h"
 #include "trees/growth.h"
+#include "trees/growth/crown.h"
+#include "trees/patches.h"
 
 #include <cstring>
 #include <gtest/gtest.h>
@@ -176,6 +178,13 @@ TEST(Growth, LeavesOfAllFormsHaveTheAreaThatWasReckonedWith) {
     const Tree tree = grow(cards);
     EXPECT_EQ(tree.parts[1].triangles.size(), 200u);
     ASSERT_TRUE(tree.materials[1].alpha_texture);
+    // The mask shows the area that the crown's size was reckoned with.
+    const PatchScene scene = make_patches(tree);
+    const std::vector<double> areas = solid_areas(scene);
+    double shown = 0;
+    for (std::size_t i = 0; i < scene.leaf_count; ++i)
+        shown += areas[i];
+    EXPECT_NEAR(shown / 100, mean_leaf_area(cards), 0.08 * mean_leaf_area(cards));
     EXPECT_FALSE(grow(oak_with(100)).materials[1].alpha_texture);
 }
 
