@@ -1,5 +1,7 @@
 #include "foliage/captured_maps.h"
+#include "common/directions/lobes.h"
 #include "common/directions/spherical_harmonics.h"
+#include "common/directions/zonal.h"
 #include "common/services/parallel.h"
 
 #include <algorithm>
@@ -10,49 +12,22 @@ namespace kokage {
 
 namespace {
 
-/// Means of the Legendre polynomials over a cap: (P_{l-1}(c) - P_{l+1}(c)) / ((2l+1)(1-c)), c the cosine of its half
-/// angle.
-std::vector<double> cap_means(int bands, double half_angle) {
-    std::vector<double> means(std::size_t(bands), 1.0);
-    if (!(half_angle * bands > 1e-3)) // the cap is a point to 1e-6; the quotient would cancel
-        return means;
-    const double c = std::cos(half_angle);
-    std::vector<double> p(std::size_t(bands) + 1);
-    p[0] = 1;
-    p[1] = c;
-    for (int l = 2; l <= bands; ++l)
-        p[std::size_t(l)] = ((2 * l - 1) * c * p[std::size_t(l - 1)] - (l - 1) * p[std::size_t(l - 2)]) / l;
-    for (int l = 1; l < bands; ++l)
-        means[std::size_t(l)] = (p[std::size_t(l - 1)] - p[std::size_t(l + 1)]) / ((2 * l + 1) * (1 - c));
-    return means;
-}
-
 /// Radiance integrated over a uniform cap, from the irradiance on a surface that faces it: solid angle 2pi(1-c) over pi
 /// sin^2.
 double flux_per_irradiance(double half_angle) {
     return 2 / (1 + std::cos(half_angle));
 }
 
-void add_cap(const glm::vec3& direction, const glm::vec3& irradiance, double half_angle, int bands,
-             std::vector<glm::dvec3>& sums) {
-    std::vector<double> harmonics(sh_count(bands));
-    evaluate_sh(bands, glm::dvec3(direction), harmonics);
-    const std::vector<double> means = cap_means(bands, half_angle);
-    const glm::dvec3 flux = glm::dvec3(irradiance) * flux_per_irradiance(half_angle);
-    for (int l = 0; l < bands; ++l)
-        for (int m = -l; m <= l; ++m)
-            sums[sh_index(l, m)] += flux * (means[std::size_t(l)] * harmonics[sh_index(l, m)]);
-}
-
 } // namespace
 
 std::vector<glm::vec3> project_light(const DistantLight& light, int bands) {
-    std::vector<glm::dvec3> sums(sh_count(bands), glm::dvec3(0.0));
+    std::vector<glm::vec3> coefficients(sh_count(bands), glm::vec3(0.f));
     if (light.texels.empty())
-        add_cap(light.direction, light.irradiance, light.half_angle, bands, sums);
+        add_zonal(coefficients, light.direction, light.irradiance * float(flux_per_irradiance(light.half_angle)),
+                  cone_lobe(bands, light.half_angle));
     for (const DistantLight::Texel& texel : light.texels) // radiance x solid angle: already a flux
-        add_cap(texel.direction, texel.irradiance, 0, bands, sums);
-    return {sums.begin(), sums.end()};
+        add_zonal(coefficients, texel.direction, texel.irradiance, std::vector<double>(std::size_t(bands), 1.0));
+    return coefficients;
 }
 
 void MapCoefficients::scale_bands(std::span<const double> factors) {

@@ -20,7 +20,6 @@ struct GroundGrid {
     /// The cell under a point; size() must not be 0.
     std::size_t cell(const glm::vec3& point) const;
     glm::vec3 centre(std::size_t near_cell) const;
-    double cell_area() const { return double(cell_m) * double(cell_m); }
 };
 
 /// A grid that reaches beyond the scene's footprint by the scene's height, where most of the shade falls.

@@ -34,7 +34,7 @@ glm::vec3 seen_radiance(std::uint32_t seen, const SideRadiance& tree, std::span<
         return glm::vec3(0.f);
     const std::size_t patch = seen / 2;
     if (patch >= tree.front.size())
-        return ground[seen - 2 * tree.front.size()];
+        return ground.empty() ? glm::vec3(0.f) : ground[seen - 2 * tree.front.size()];
     return seen % 2 == 0 ? tree.front[patch] : tree.back[patch];
 }
 
@@ -95,8 +95,7 @@ glm::vec3 GroundLight::irradiance_from_tree(std::size_t cell, const SideRadiance
     glm::vec3 sum{0.f};
     const std::span<const std::uint32_t> seen = capture_.seen_from(cell);
     for (std::size_t k = 0; k < seen.size(); ++k)
-        if (seen[k] != kSeesSky && seen[k] / 2 < tree.front.size())
-            sum += cosine_weights_[k] * seen_radiance(seen[k], tree, {});
+        sum += cosine_weights_[k] * seen_radiance(seen[k], tree, {});
     return sum;
 }
 
@@ -111,15 +110,6 @@ std::vector<glm::vec3> GroundLight::radiance(const SideRadiance& tree) const {
         }
     });
     return result;
-}
-
-double GroundLight::power_from_tree(const SideRadiance& tree) const {
-    double power = 0;
-    for (std::size_t cell = 0; cell + 1 < grid_.size(); ++cell) {
-        const glm::vec3 irradiance = irradiance_from_tree(cell, tree);
-        power += grid_.cell_area() * (double(irradiance.r) + irradiance.g + irradiance.b);
-    }
-    return power;
 }
 
 std::uint64_t GroundLight::rays_traced() const {

@@ -15,8 +15,6 @@ class GroundLight {
     void set_environment(const Environment& environment, Progress& progress);
     /// Outgoing radiance of every cell under that environment and a lit tree; as long as grid().size().
     std::vector<glm::vec3> radiance(const SideRadiance& tree) const;
-    /// Power that the near cells receive from the tree's patches, summed over channels.
-    double power_from_tree(const SideRadiance& tree) const;
 
     std::uint64_t rays_traced() const;
     std::size_t bytes() const;
@@ -33,7 +31,7 @@ class GroundLight {
     std::vector<glm::vec3> first_irradiance_; ///< from lights and sky
 };
 
-/// Radiance of what a capture ray saw; 0 where it saw the sky.
+/// Radiance of what a capture ray saw; 0 where it saw the sky. An empty `ground` is dark.
 glm::vec3 seen_radiance(std::uint32_t seen, const SideRadiance& tree, std::span<const glm::vec3> ground);
 
 } // namespace kokage

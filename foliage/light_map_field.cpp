@@ -1,8 +1,9 @@
 #include "foliage/light_map_field.h"
+#include "common/directions/lobes.h"
 #include "common/directions/spherical_harmonics.h"
+#include "common/directions/window.h"
 #include "common/services/error.h"
 #include "common/services/parallel.h"
-#include "foliage/map_kernel.h"
 #include "foliage/map_reading.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ namespace kokage {
 namespace {
 
 constexpr int kMostBands = 40;
-constexpr double kRoundingMargin = 2e-6; // so that rounding cannot make an iteration grow at rho + tau = 1
+constexpr double kRoundingMargin = 2e-6;  // so that rounding cannot make an iteration grow at rho + tau = 1
 constexpr float kFlatEnough = 0.98f;      // mean normal's length: about 11 degrees of bend to either side
 constexpr float kLeastVisibility = 0.05f; // a map behind leaves still tells something, and shares must not all be 0
 
@@ -34,7 +35,7 @@ LightMapField::LightMapField(const RayQueries& queries, const GroundGrid& ground
                              const LightMapFieldOptions& options, Progress& progress)
     : options_(checked(options)), geometry_(patch_geometry(queries.scene())),
       placement_(place_light_maps(tree, options.maps)), places_(placement_.places),
-      window_(squared_dirichlet_factors(options.bands)), scene_(queries.scene()) {
+      window_(window_factors(Window::non_negative, options.bands)), scene_(queries.scene()) {
     choose_nearest(options.nearest);
     drop_unread();
     maps_ = std::make_unique<CapturedMaps>(queries, ground, places_, options.bands, options.least_directions, progress);
@@ -157,7 +158,7 @@ void LightMapField::update(const SideRadiance& radiance, std::span<const glm::ve
     coefficients_ = captured_;
     std::vector<double> factors = window_;
     if (options_.gather == GatherRule::cosine) {
-        const std::vector<double> cosine = clamped_cosine_factors(options_.bands);
+        const std::vector<double> cosine = cosine_lobe(options_.bands);
         for (std::size_t l = 0; l < factors.size(); ++l)
             factors[l] *= cosine[l];
     }
@@ -203,7 +204,7 @@ glm::vec3 LightMapField::read_rule(std::size_t patch, std::vector<float>& harmon
     return sum;
 }
 
-SideIrradiance LightMapField::irradiance() const {
+SideIrradiance LightMapField::read() const {
     const std::size_t patches = geometry_.centres.size();
     SideIrradiance result{std::vector<glm::vec3>(patches), std::vector<glm::vec3>(patches)};
     parallel_blocks(patches, 256, [&](std::size_t begin, std::size_t end) {
@@ -219,6 +220,31 @@ SideIrradiance LightMapField::irradiance() const {
         }
     });
     return result;
+}
+
+SideIrradiance LightMapField::irradiance() const {
+    SideIrradiance result = read();
+    for (std::size_t p = 0; p < front_scale_.size(); ++p) {
+        result.front[p] *= front_scale_[p];
+        result.back[p] *= back_scale_[p];
+    }
+    return result;
+}
+
+void LightMapField::set_filled_shares(const std::vector<float>& front, const std::vector<float>& back) {
+    const std::vector<glm::vec3> one(scene_.patches.size(), glm::vec3(1.f));
+    update({one, one}, {});
+    const SideIrradiance seen = read(); // pi x the share that the maps see filled
+    front_scale_.resize(one.size());
+    back_scale_.resize(one.size());
+    const auto scale = [](float filled, float in_maps) {
+        return in_maps > 0 ? std::sqrt(filled * kPi / in_maps) * float(1 - kRoundingMargin) : 0.f;
+    };
+    for (std::size_t p = 0; p < one.size(); ++p) {
+        front_scale_[p] = scale(front[p], seen.front[p].r);
+        back_scale_[p] = scale(back[p], seen.back[p].r);
+    }
+    captured_ = coefficients_ = MapCoefficients(places_.size(), options_.bands);
 }
 
 std::vector<LightMap> LightMapField::export_maps(std::span<const glm::vec3> sky) const {

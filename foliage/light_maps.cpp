@@ -14,7 +14,7 @@ namespace kokage {
 namespace {
 
 constexpr int kDefaultMaps = 100;
-constexpr int kRaysASide = 16, kLightRays = 8; // of first light
+constexpr int kRaysASide = 16; // of first light; as many to the lights together, at least 2 to each
 
 LightMapFieldOptions field_options(const ShadingOptions& options) {
     if (options.maps < 0)
@@ -31,6 +31,15 @@ double sum(const glm::vec3& v) {
     return double(v.r) + v.g + v.b;
 }
 
+SideIrradiance total(const SideIrradiance& a, const SideIrradiance& b) {
+    SideIrradiance result = a;
+    for (std::size_t p = 0; p < a.front.size(); ++p) {
+        result.front[p] += b.front[p];
+        result.back[p] += b.back[p];
+    }
+    return result;
+}
+
 bool absorbs_nothing(const Optics& optics) {
     const glm::vec3 sent_on = optics.reflectance + optics.transmittance;
     return std::max({sent_on.r, sent_on.g, sent_on.b}) >= 1;
@@ -44,8 +53,10 @@ class LightMapsTransport final : public Transport {
           field_(queries_, ground_.grid(), tree, field_options(options), progress) {
         stages_.push_back({"capturing light maps", watch_.cpu(), watch_.wall()});
         watch_.restart();
-        first_light_ = std::make_unique<FirstLightByRays>(queries_, options.effort > 0 ? options.effort : kRaysASide,
-                                                          kLightRays, options.seed, progress);
+        first_light_ = std::make_unique<FirstLightByRays>(
+            queries_, ground_.grid(), options.effort > 0 ? options.effort : kRaysASide, options.seed, progress);
+        first_light_->filled_shares(filled_front_, filled_back_);
+        field_.set_filled_shares(filled_front_, filled_back_);
         stages_.push_back({"tracing the open sky", watch_.cpu(), watch_.wall()});
     }
 
@@ -57,7 +68,8 @@ class LightMapsTransport final : public Transport {
 
   private:
     SideRadiance scatter(const SideIrradiance& first, const SideIrradiance& bounced) const;
-    void balance_energy(Solution& solution, const FirstLight& first, const SideIrradiance& bounced);
+    void balance_energy(Solution& solution, const FirstLight& first, const SideIrradiance& bounced,
+                        const SideIrradiance& from_ground) const;
     void report(Solution& solution, const Convergence& convergence) const;
 
     const PatchScene& scene_;
@@ -69,6 +81,7 @@ class LightMapsTransport final : public Transport {
     GroundLight ground_;
     LightMapField field_;
     std::unique_ptr<FirstLightByRays> first_light_;
+    std::vector<float> filled_front_, filled_back_;
     std::vector<WorkReport::Stage> stages_;
 };
 
@@ -87,15 +100,6 @@ SideRadiance LightMapsTransport::scatter(const SideIrradiance& first, const Side
     return radiance;
 }
 
-SideIrradiance total(const SideIrradiance& a, const SideIrradiance& b) {
-    SideIrradiance result = a;
-    for (std::size_t p = 0; p < a.front.size(); ++p) {
-        result.front[p] += b.front[p];
-        result.back[p] += b.back[p];
-    }
-    return result;
-}
-
 Solution LightMapsTransport::solve(const Environment& environment, Progress& progress) {
     Solution solution;
     solution.report.stages = stages_;
@@ -108,14 +112,15 @@ Solution LightMapsTransport::solve(const Environment& environment, Progress& pro
     watch.restart();
     Convergence convergence(options_.max_bounces > 0 ? options_.max_bounces + 1 : 0, 0.1 * options_.error);
     const std::vector<glm::vec3> dark(scene_.patches.size(), glm::vec3(0.f));
-    SideIrradiance bounced{dark, dark};
+    SideIrradiance bounced{dark, dark}, from_ground{dark, dark};
     solution.radiance = {dark, dark};
     progress.begin("bouncing light between maps and leaves", 0);
     for (bool more = true; more;) {
         progress.throw_if_stopped();
-        if (!convergence.residuals().empty()) { // the first shading has seen first light alone
-            field_.update(solution.radiance, ground_.radiance(solution.radiance));
-            bounced = field_.irradiance();
+        if (!convergence.residuals().empty()) {   // the first shading has seen first light alone
+            field_.update(solution.radiance, {}); // rays see the ground better than maps
+            from_ground = first_light_->from_ground(ground_.radiance(solution.radiance));
+            bounced = total(field_.irradiance(), from_ground);
         }
         SideRadiance next = scatter(direct, bounced);
         more = convergence.another(compare_bounces(solution.radiance, next));
@@ -129,30 +134,25 @@ Solution LightMapsTransport::solve(const Environment& environment, Progress& pro
     solution.sky_visibility_front = first.open_front;
     solution.sky_visibility_back = first.open_back;
     solution.bent_normal = first.bent_normal;
-    balance_energy(solution, first, bounced);
+    balance_energy(solution, first, bounced, from_ground);
     report(solution, convergence);
     return solution;
 }
 
-/// Into the tree: first light, and what the ground sends. Out of it: what sees the sky or falls on the ground.
-void LightMapsTransport::balance_energy(Solution& solution, const FirstLight& first, const SideIrradiance& bounced) {
-    SideIrradiance in = total(first.sky, first.lights);
-    const SideIrradiance received = total(in, bounced);
-    if (scene_.ground) {
-        const std::vector<glm::vec3> dark(scene_.patches.size(), glm::vec3(0.f));
-        field_.update({dark, dark}, ground_.radiance(solution.radiance));
-        in = total(in, field_.irradiance());
-    }
+/// Into the tree: first light, and what the ground sends. Out of it: what sees the sky or the ground.
+void LightMapsTransport::balance_energy(Solution& solution, const FirstLight& first, const SideIrradiance& bounced,
+                                        const SideIrradiance& from_ground) const {
+    const SideIrradiance direct = total(first.sky, first.lights), in = total(direct, from_ground),
+                         received = total(direct, bounced);
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
         const Optics& optics = optics_[scene_.patches[p].optics];
         const glm::vec3 absorbed = 1.f - optics.reflectance - optics.transmittance;
         solution.energy_in += areas_[p] * sum(in.front[p] + in.back[p]);
         solution.energy_absorbed += areas_[p] * sum(absorbed * (received.front[p] + received.back[p]));
         solution.energy_escaped += areas_[p] * kPiDouble *
-                                   (sum(solution.radiance.front[p]) * first.open_front[p] +
-                                    sum(solution.radiance.back[p]) * first.open_back[p]);
+                                   (sum(solution.radiance.front[p]) * (1 - filled_front_[p]) +
+                                    sum(solution.radiance.back[p]) * (1 - filled_back_[p]));
     }
-    solution.energy_escaped += ground_.power_from_tree(solution.radiance);
 }
 
 void LightMapsTransport::report(Solution& solution, const Convergence& convergence) const {

@@ -1,6 +1,6 @@
 #include "foliage/open_sky.h"
 #include "common/services/parallel.h"
-#include "foliage/patch_sampling.h"
+#include "foliage/cosine_direction.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,15 +18,17 @@ double sum(const glm::vec3& v) {
 }
 
 /// Share of rays from one side of a patch that hit no other patch (the ground counts as outside).
-float measure_openness(const RayQueries& queries, std::uint32_t patch, float side, Random& random) {
+float measure_openness(const RayQueries& queries, const PatchPoints& points, std::uint32_t patch, float side,
+                       std::uint64_t seed) {
     int open = 0;
     for (int i = 0; i < kRaysASide; ++i) {
-        const PatchPoint point = sample_patch(queries.scene(), patch, random);
-        const float u0 = (float(i / 4) + random.uniform()) / 4, u1 = (float(i % 4) + random.uniform()) / 4;
-        const glm::vec3 direction = cosine_direction(side * point.normal, u0, u1);
+        PathNumbers numbers(seed, std::uint32_t(i));
+        PatchPoint point;
+        if (!points.sample(patch, numbers, point))
+            return 0;
         RayHit hit;
-        open += !queries.first_hit(point.position, direction, queries.ray_offset(),
-                                   std::numeric_limits<float>::infinity(), hit) ||
+        open += !queries.first_hit(point.position, cosine_direction(side * point.normal, numbers.pair()),
+                                   queries.ray_offset(), std::numeric_limits<float>::infinity(), hit) ||
                 hit.ground;
     }
     return float(open) / float(kRaysASide);
@@ -34,8 +36,7 @@ float measure_openness(const RayQueries& queries, std::uint32_t patch, float sid
 
 } // namespace
 
-OpenSky::OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progress)
-    : areas_(solid_areas(queries.scene())) {
+OpenSky::OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progress) : points_(queries.scene()) {
     const std::size_t patches = queries.scene().patches.size(), count = std::min(patches, kSampledPatches);
     sampled_.resize(count);
     parallel_blocks(count, 64, [&](std::size_t begin, std::size_t end) {
@@ -43,9 +44,8 @@ OpenSky::OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progre
         for (std::size_t i = begin; i < end; ++i) {
             Sampled& sampled = sampled_[i];
             sampled.patch = std::uint32_t(i * patches / count);
-            Random random(seed, 0x6f70656e00000000ull + i);
-            sampled.open_front = measure_openness(queries, sampled.patch, 1, random);
-            sampled.open_back = measure_openness(queries, sampled.patch, -1, random);
+            sampled.open_front = measure_openness(queries, points_, sampled.patch, 1, hash64(seed ^ hash64(2 * i)));
+            sampled.open_back = measure_openness(queries, points_, sampled.patch, -1, hash64(seed ^ hash64(2 * i + 1)));
         }
     });
     rays_ = 2 * count * kRaysASide;
@@ -53,11 +53,11 @@ OpenSky::OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progre
 
 double OpenSky::escaping_power(const SideRadiance& radiance) const {
     double sent_by_all = 0, sent_by_sampled = 0, escaped_of_sampled = 0;
-    for (std::size_t p = 0; p < areas_.size(); ++p)
-        sent_by_all += areas_[p] * kPiDouble * (sum(radiance.front[p]) + sum(radiance.back[p]));
+    for (std::size_t p = 0; p < areas().size(); ++p)
+        sent_by_all += areas()[p] * kPiDouble * (sum(radiance.front[p]) + sum(radiance.back[p]));
     for (const Sampled& sampled : sampled_) {
-        const double front = areas_[sampled.patch] * kPiDouble * sum(radiance.front[sampled.patch]);
-        const double back = areas_[sampled.patch] * kPiDouble * sum(radiance.back[sampled.patch]);
+        const double front = areas()[sampled.patch] * kPiDouble * sum(radiance.front[sampled.patch]);
+        const double back = areas()[sampled.patch] * kPiDouble * sum(radiance.back[sampled.patch]);
         sent_by_sampled += front + back;
         escaped_of_sampled += front * sampled.open_front + back * sampled.open_back;
     }

@@ -1,6 +1,7 @@
 #pragma once
 #include "common/services/progress.h"
 #include "common/trace/ray_queries.h"
+#include "foliage/patch_points.h"
 #include "foliage/solution.h"
 
 #include <vector>
@@ -14,7 +15,7 @@ class OpenSky {
     OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progress);
     /// Power that leaves the tree, to the sky and to the ground, summed over channels.
     double escaping_power(const SideRadiance& radiance) const;
-    const std::vector<double>& areas() const { return areas_; } ///< solid area of each patch in m^2
+    const std::vector<double>& areas() const { return points_.areas(); } ///< solid area of each patch in m^2
     std::uint64_t rays_traced() const { return rays_; }
 
   private:
@@ -22,7 +23,7 @@ class OpenSky {
         std::uint32_t patch;
         float open_front, open_back; ///< share of the side's cosine-weighted hemisphere in which no patch is hit
     };
-    std::vector<double> areas_;
+    PatchPoints points_;
     std::vector<Sampled> sampled_;
     std::uint64_t rays_ = 0;
 };
