@@ -9,10 +9,11 @@ namespace kokage {
 
 namespace {
 
-constexpr std::size_t kWindow = 5;  // bounces over which the rate is averaged
-constexpr int kMostBounces = 500;   // when none is asked for
-constexpr double kTooBright = 1e33; // changes above this could leave the range of float at the next bounce
-constexpr double kRounding = 1e-6;  // changes of this share of the radiance are rounding, and need not shrink
+constexpr std::size_t kWindow = 5;      // bounces over which the rate is averaged
+constexpr int kMostBounces = 500;       // when none is asked for
+constexpr double kTooBright = 1e33;     // changes above this could leave the range of float at the next bounce
+constexpr double kAsGoodAsOne = 0.9999; // a factor per bounce from here on is no contraction that ends in a lifetime
+constexpr double kRounding = 1e-6;      // changes of this share of the radiance are rounding, and need not shrink
 
 double largest(const glm::vec3& v) {
     return std::max({v.r, v.g, v.b});
@@ -66,7 +67,7 @@ std::optional<double> Convergence::rate() const {
 
 bool Convergence::diverges() const {
     const std::optional<double> factor = rate();
-    return factor && *factor >= 1 && changes_.size() >= kWindow + 2 && residuals_.back() > kRounding;
+    return factor && *factor >= kAsGoodAsOne && changes_.size() >= kWindow + 2 && residuals_.back() > kRounding;
 }
 
 std::string Convergence::warning() const {

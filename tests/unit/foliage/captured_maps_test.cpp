@@ -2,7 +2,7 @@
 #include "common/services/parallel.h"
 #include "foliage/captured_maps.h"
 #include "foliage/map_reading.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/rooms.h"
 
 #include <gtest/gtest.h>
 
@@ -16,22 +16,10 @@ std::vector<LightMapPlace> place_at(const glm::vec3& position, float clearance =
     return {place};
 }
 
-/// Six walls around the origin, fronts inwards, of half edge `half`, a patch each.
-PatchScene closed_box(float half, const Optics& optics) {
+PatchScene closed_box(float half) {
     PatchScene scene;
-    scene.optics = {optics};
-    const float e = 2 * half;
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (float side : {-1.f, 1.f}) {
-            glm::vec3 u(0.f), v(0.f), corner(-half);
-            u[(axis + 1) % 3] = e;
-            v[(axis + 2) % 3] = e;
-            corner[axis] = side * half;
-            if (side < 0)
-                test::add_rectangle(scene, corner, u, v);
-            else
-                test::add_rectangle(scene, corner, v, u);
-        }
+    scene.optics.resize(1);
+    test::add_box(scene, glm::vec3(0), half);
     return scene;
 }
 
@@ -61,7 +49,7 @@ TEST(CapturedMaps, OfAConstantSkyAreConstant) {
 }
 
 TEST(CapturedMaps, InAClosedRoomSeeItsWallsAndNoSky) {
-    const PatchScene room = closed_box(1, {});
+    const PatchScene room = closed_box(1);
     const RayQueries queries(room);
     const CapturedMaps maps(queries, {}, place_at({0.3f, -0.2f, 0.1f}), 7, 968, silent_progress());
     MapCoefficients map(1, 7);
@@ -100,7 +88,7 @@ TEST(CapturedMaps, LookThroughHolesOfAlphaMasks) {
 }
 
 TEST(CapturedMaps, LookOutOfTheWoodThatHoldsTheirPoint) {
-    PatchScene scene = closed_box(0.1f, {}); // fronts inwards: turn them outwards to make a piece of wood
+    PatchScene scene = closed_box(0.1f); // fronts inwards: turn them outwards to make a piece of wood
     for (glm::uvec3& triangle : scene.triangles)
         std::swap(triangle.y, triangle.z);
     make_bark(scene);
