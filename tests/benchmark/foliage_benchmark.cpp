@@ -99,8 +99,8 @@ class Run {
         const ReferenceOptions reference = reference_options(options_);
         if (std::optional<Reference> found = find_reference(scene, reference))
             return truth_of(*found);
-        out_ << "  no stored reference of this very scene: tracing one (" << reference.paths_per_side
-             << " paths a leaf side)\n"
+        out_ << "  no stored reference of " << to_string(scene.name) << " as it is now: tracing one ("
+             << reference.paths_per_side << " paths a leaf side)\n"
              << std::flush;
         return truth_of(find_or_make_reference(scene, reference, progress_));
     }
