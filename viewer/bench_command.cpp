@@ -1,0 +1,51 @@
+// `kokage bench`: time against error, in tables and plots.
+#include "tests/benchmark/foliage_benchmark.h"
+#include "viewer/command.h"
+
+#include <iostream>
+#include <memory>
+#include <stdexcept>
+
+namespace kokage {
+namespace {
+
+/// Swallows text, for --quiet.
+class NoText : public std::streambuf {
+    int overflow(int c) override { return traits_type::not_eof(c); }
+};
+
+} // namespace
+
+Command bench_command(CLI::App& program) {
+    const auto options = std::make_shared<FoliageBenchmarkOptions>();
+    CLI::App* app = program.add_subcommand("bench", "Measure every method: error against time");
+    app->footer("\nExample: kokage bench foliage --quick -o results");
+    const auto what = std::make_shared<std::string>();
+    app->add_option("WHAT", *what, "What to measure: foliage")
+        ->required()
+        ->check(CLI::IsMember({"foliage"}).description(""));
+    app->add_option("-o,--output", options->output_folder,
+                    "Folder for foliage.json, foliage.md and plots; made if it is missing")
+        ->type_name("FOLDER")
+        ->required();
+    app->add_flag("--quick", options->quick,
+                  "The scenes of 30,000 leaves alone: within two minutes with stored references");
+    app->add_option("--data", options->data_folder, "Folder with environments (env/*.hdr, *.exr)")
+        ->type_name("FOLDER")
+        ->envname("KOKAGE_DATA");
+    app->add_option("--reference-paths", options->reference_paths,
+                    "Paths a leaf side of references that are not stored and must be made")
+        ->type_name("N")
+        ->check(CLI::PositiveNumber.description(""))
+        ->capture_default_str();
+    return {app, [options](const CommandContext& context) {
+                options->threads = context.threads;
+                NoText nothing;
+                std::ostream silent(&nothing);
+                if (run_foliage_benchmark(*options, *context.progress, context.quiet ? silent : std::cout) != 0)
+                    throw std::runtime_error("a measurement failed; the others are in " +
+                                             options->output_folder.string());
+            }};
+}
+
+} // namespace kokage
