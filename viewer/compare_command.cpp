@@ -1,13 +1,13 @@
 // `kokage compare`: how far two pictures, or two shadings of a tree, are apart.
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
-#include "common/services/output_file.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
 #include "viewer/compare_trees.h"
 #include "viewer/output_check.h"
 #include "viewer/stop_signal.h"
 #include "viewer/values.h"
+#include "viewer/write_json.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -63,7 +63,7 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
                              {"error_of_1_clamped", figures_json(shown.all)},
                              {"largest_error_at", {whole.max_x, whole.max_y}},
                              {"values_not_finite", whole.skipped_values}};
-        write_file(options.report, report.dump(2) + "\n");
+        write_json(options.report, report);
     }
 }
 
@@ -92,7 +92,7 @@ void compare_trees(const CompareOptions& options, const CommandContext& context)
                              {"bias", c.accuracy.bias},
                              {"largest", c.largest},
                              {"largest_leaf", c.largest_leaf}};
-        write_file(options.report, report.dump(2) + "\n");
+        write_json(options.report, report);
     }
 }
 

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <new>
@@ -63,6 +64,10 @@ int run_command(const Command& command, bool quiet, int threads) {
     } catch (const InputError& error) {
         progress.clear();
         return complain(error.what(), kInputError);
+    } catch (
+        const std::filesystem::filesystem_error& error) { // a place that the system refuses: too long, no permission
+        progress.clear();
+        return complain("'" + error.path1().string() + "': " + error.code().message(), kInputError);
     } catch (const std::bad_alloc&) {
         progress.clear();
         return complain("not enough memory", kInternalError);

@@ -1,7 +1,6 @@
 // `kokage shade`: tree + surroundings -> the light on every leaf, as glTF, picture and report.
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
-#include "common/services/output_file.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
 #include "viewer/output_check.h"
@@ -11,6 +10,7 @@
 #include "viewer/stage_clock.h"
 #include "viewer/stop_signal.h"
 #include "viewer/values.h"
+#include "viewer/write_json.h"
 
 #include <cstdio>
 #include <memory>
@@ -79,12 +79,21 @@ void write_picture(const ShadeOptions& options, const Image& radiance) {
         save_image(options.image, radiance);
 }
 
+/// " (asked for 5 %)" where an error was asked for.
+std::string asked_text(const ShadingOptions& options) {
+    char text[48] = "";
+    if (options.effort == 0)
+        std::snprintf(text, sizeof text, " (asked for %.3g %%)", 100 * options.error);
+    return text;
+}
+
 void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
     std::printf("%s: %s leaves, %s patches; %s\n", s.tree.name.c_str(), count_text(s.tree.leaves.size()).c_str(),
                 count_text(s.patches.patches.size()).c_str(), s.environment.description.c_str());
     std::printf("%s: ", std::string(method_name(options.shading.method)).c_str());
     if (s.solution.estimated_error)
-        std::printf("estimated error %.2g %%, ", 100 * *s.solution.estimated_error);
+        std::printf("estimated error %.2g %%%s, ", 100 * *s.solution.estimated_error,
+                    asked_text(options.shading).c_str());
     if (!s.solution.residuals.empty())
         std::printf("%zu bounces, ", s.solution.residuals.size());
     std::printf("%s kept for relighting\n", bytes_text(double(s.solution.transport_bytes)).c_str());
@@ -132,7 +141,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         if (!file->empty())
             record.outputs.emplace_back(what, file->string());
     if (!options.report.empty())
-        write_file(options.report, shading_report(record).dump(2) + "\n");
+        write_json(options.report, shading_report(record));
 
     context.progress->clear();
     if (context.quiet)

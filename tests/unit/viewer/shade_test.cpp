@@ -66,6 +66,8 @@ TEST(Shade, ReportHoldsWhatItPromises) {
     EXPECT_GT(stages, 0);
     EXPECT_LE(stages, double(r["cpu_seconds"]) + 0.01);
     EXPECT_GT(r["peak_memory_bytes"], 1e6);
+    EXPECT_GT(r["energy"]["in"], 0);
+    EXPECT_NEAR(double(r["energy"]["balance"]), 1, 0.1);
     EXPECT_GT(r["estimated_error"], 0);
     EXPECT_LT(r["estimated_error"], 0.15);
     for (const char* key : {"residuals", "skipped", "warnings", "method_stages"})
@@ -79,6 +81,7 @@ TEST(Shade, EveryMethodShades) {
     for (const char* method : {"paper", "light-maps", "bundles", "path-traced"}) {
         const Json r = report_of(folder, {"--method", method});
         EXPECT_EQ(r["method"]["name"], method);
+        EXPECT_GT(r["energy"]["in"], 0);
     }
 }
 
