@@ -17,6 +17,8 @@ inline constexpr float kPi = 3.14159265358979323846f;
 inline constexpr double kPiDouble = 3.14159265358979323846;
 
 /// Relative luminance of a linear Rec.709 colour.
-inline float luminance(const glm::vec3& rgb) { return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b; }
+inline float luminance(const glm::vec3& rgb) {
+    return 0.2126f * rgb.r + 0.7152f * rgb.g + 0.0722f * rgb.b;
+}
 
 } // namespace kokage

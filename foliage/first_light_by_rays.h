@@ -9,8 +9,8 @@ namespace kokage {
 
 struct FirstLight {
     SideIrradiance sky, lights;
-    std::vector<float> open_front, open_back;     ///< cosine-weighted share of the side's hemisphere that sees the sky
-    std::vector<glm::vec3> bent_normal;           ///< mean open direction of both sides together, unit or 0
+    std::vector<float> open_front, open_back; ///< cosine-weighted share of the side's hemisphere that sees the sky
+    std::vector<glm::vec3> bent_normal;       ///< mean open direction of both sides together, unit or 0
 };
 
 /// Rays are traced once; another environment costs sums over them, and rays only towards lights that moved.

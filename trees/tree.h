@@ -29,14 +29,14 @@ struct Skeleton {
 /// How a surface looks (glTF's metallic-roughness without what foliage doesn't need).
 struct TreeMaterial {
     std::string name;
-    glm::vec3 base_color{1.f}; ///< linear
+    glm::vec3 base_color{1.f};                       ///< linear
     std::shared_ptr<const Image> base_color_texture; ///< linear RGB, 3 channels; null = none
     std::shared_ptr<const Image> alpha_texture;      ///< 1 channel; null = solid
     float alpha_cutoff = 0.5f;
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     bool double_sided = true;
     float roughness = 1.f;
-    float diffuse_transmission = -1.f;               ///< KHR_materials_diffuse_transmission factor; < 0 = not given
+    float diffuse_transmission = -1.f; ///< KHR_materials_diffuse_transmission factor; < 0 = not given
     glm::vec3 diffuse_transmission_color{1.f};
 };
 
@@ -50,9 +50,9 @@ struct TreePart {
     std::vector<glm::vec3> normals;   ///< unit; as long as positions
     std::vector<glm::vec2> uvs;       ///< as long as positions (KHR_texture_transform applied), or empty
     std::vector<glm::uvec3> triangles;
-    /// Foliage: the leaf of each triangle, numbered from 0 over the whole tree; a leaf's triangles are consecutive in one part.
-    /// Bark: the bark patch of each triangle, numbered from 0 over the whole tree, consecutive likewise
-    /// (a patch is a piece of bark about as long as it is thick around, small enough to carry one radiance).
+    /// Foliage: the leaf of each triangle, numbered from 0 over the whole tree; a leaf's triangles are consecutive in
+    /// one part. Bark: the bark patch of each triangle, numbered from 0 over the whole tree, consecutive likewise (a
+    /// patch is a piece of bark about as long as it is thick around, small enough to carry one radiance).
     std::vector<std::uint32_t> triangle_patch;
 };
 
@@ -62,16 +62,16 @@ struct Leaf {
 };
 
 struct Tree {
-    std::string name;    ///< "oak", or a file's stem
-    std::string source;  ///< "grown: oak, seed 1", or the file's path
+    std::string name;       ///< "oak", or a file's stem
+    std::string source;     ///< "grown: oak, seed 1", or the file's path
     glm::dvec3 origin{0.0}; ///< added to every position: files far from the origin keep their precision
     Skeleton skeleton;
     std::vector<TreeMaterial> materials;
     std::vector<TreePart> parts;
     std::vector<Leaf> leaves;
     std::uint32_t bark_patch_count = 0;
-    bool branching_known = true;      ///< false: inferred from bark and leaf clusters
-    std::vector<std::string> notes;   ///< what was guessed or substituted, for reports
+    bool branching_known = true;    ///< false: inferred from bark and leaf clusters
+    std::vector<std::string> notes; ///< what was guessed or substituted, for reports
 };
 
 } // namespace kokage

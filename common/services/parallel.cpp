@@ -21,8 +21,9 @@ void set_thread_count(int threads) {
 }
 
 int thread_count() {
-    return static_cast<int>(std::min<std::size_t>(
-        tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism), tbb::info::default_concurrency()));
+    return static_cast<int>(
+        std::min<std::size_t>(tbb::global_control::active_value(tbb::global_control::max_allowed_parallelism),
+                              tbb::info::default_concurrency()));
 }
 
 void parallel_blocks(std::size_t count, std::size_t block, const std::function<void(std::size_t, std::size_t)>& body) {

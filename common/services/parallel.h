@@ -10,8 +10,8 @@ namespace kokage {
 void set_thread_count(int threads);
 int thread_count();
 
-/// Calls body(begin, end) for consecutive blocks of at most `block` indices that cover [0, count), in any order, on any thread.
-/// An exception of a body is rethrown here once the running blocks have ended.
+/// Calls body(begin, end) for consecutive blocks of at most `block` indices that cover [0, count), in any order, on any
+/// thread. An exception of a body is rethrown here once the running blocks have ended.
 void parallel_blocks(std::size_t count, std::size_t block, const std::function<void(std::size_t, std::size_t)>& body);
 
 } // namespace kokage
