@@ -31,10 +31,11 @@ struct Shading {
 };
 
 Image draw(const Shading& shading, const ShadeOptions& options, Progress& progress) {
-    const ShadedScene scene = shaded_scene(shading.tree, shading.patches, shading.origins, shading.solution);
+    ShadedScene scene = shaded_scene(shading.tree, shading.patches, shading.origins, shading.solution);
+    scene.foot_height = foot_height(shading.tree);
     const RayQueries queries(shading.patches);
-    const Camera camera =
-        frame_scene(bounds_of(shading.patches), float(options.picture.width) / float(options.picture.height));
+    const float aspect = float(options.picture.width) / float(options.picture.height);
+    const Camera camera = frame_scene(shading.patches, aspect, photographers_azimuth(shading.environment));
     return render_picture(scene, queries, shading.environment, camera, options.picture, progress);
 }
 

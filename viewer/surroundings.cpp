@@ -13,6 +13,7 @@ namespace kokage {
 namespace {
 
 constexpr float kHighestRadiance = 1e30f;
+constexpr glm::vec3 kDryGrass(0.17f, 0.16f, 0.09f);
 
 /// The part behind "constant:" or "gradient:"; false if `text` begins otherwise.
 bool split_kind(const std::string& text, const std::string& kind, std::string& values) {
@@ -51,22 +52,6 @@ Environment gradient(const std::string& values) {
     return gradient_environment(color(0), color(3), color(6));
 }
 
-/// Where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else its lowest
-/// point.
-float foot_height(const Tree& tree) {
-    float lowest = std::numeric_limits<float>::max();
-    if (tree.branching_known)
-        for (const Branch& branch : tree.skeleton.branches)
-            if (branch.parent < 0)
-                lowest = std::min(lowest, branch.nodes.front().position.y);
-    if (lowest != std::numeric_limits<float>::max())
-        return lowest;
-    for (const TreePart& part : tree.parts)
-        for (const glm::vec3& position : part.positions)
-            lowest = std::min(lowest, position.y);
-    return lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
-}
-
 /// What needs no file, lights left out. Empty for a file.
 std::optional<Environment> made_environment(const Surroundings& surroundings) {
     std::string values;
@@ -81,6 +66,20 @@ std::optional<Environment> made_environment(const Surroundings& surroundings) {
 }
 
 } // namespace
+
+float foot_height(const Tree& tree) {
+    float lowest = std::numeric_limits<float>::max();
+    if (tree.branching_known)
+        for (const Branch& branch : tree.skeleton.branches)
+            if (branch.parent < 0)
+                lowest = std::min(lowest, branch.nodes.front().position.y);
+    if (lowest != std::numeric_limits<float>::max())
+        return lowest;
+    for (const TreePart& part : tree.parts)
+        for (const glm::vec3& position : part.positions)
+            lowest = std::min(lowest, position.y);
+    return lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
+}
 
 void add_surroundings_options(CLI::App& app, Surroundings& s) {
     app.add_option("--environment", s.environment,
@@ -113,7 +112,8 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
     CLI::Option* with =
         ground("--ground", true, "A diffuse ground under the tree takes part in the light (always so under the sky)");
     ground("--no-ground", false, "No ground, not under the sky either")->excludes(with);
-    app.add_option("--ground-albedo", s.ground_albedo, "Its colour: one number or R,G,B from 0 to 1 (otherwise 0.2)")
+    app.add_option("--ground-albedo", s.ground_albedo,
+                   "Its colour: one number or R,G,B from 0 to 1 (otherwise dry grass: 0.17,0.16,0.09)")
         ->type_name("COLOR")
         ->group("Light");
 }
@@ -156,6 +156,7 @@ std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& en
     if (!wanted)
         return {};
     Ground ground;
+    ground.albedo = kDryGrass;
     if (!s.ground_albedo.empty())
         ground.albedo = color_from(s.ground_albedo, "--ground-albedo");
     ground.height_m = foot_height(tree);

@@ -18,7 +18,7 @@ struct Surroundings {
     std::vector<std::string> lights; ///< as common/environment/light_description.h reads them
     bool strict = false;             ///< images: refuse bad pixels
     std::optional<bool> ground;      ///< empty: where the environment has no lower half
-    std::string ground_albedo;       ///< a colour; empty = 0.2
+    std::string ground_albedo;       ///< a colour; empty = dry grass
 };
 
 void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
@@ -28,6 +28,10 @@ void check_surroundings(const Surroundings& surroundings);
 
 /// Builds or loads it. Point lights are placed relative to `origin` (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
+
+/// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else its
+/// lowest point.
+float foot_height(const Tree& tree);
 
 /// The ground that takes part in the transport, at the foot of the tree; empty if there is none.
 std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, const Tree& tree);
