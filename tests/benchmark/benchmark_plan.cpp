@@ -31,11 +31,11 @@ std::vector<PlannedScene> quick_plan() {
     using enum BenchLight;
     using enum BenchMaterial;
     const std::vector<PlannedEffort> main =
-        Efforts().bundles({16, 32, 64}).paths({64, 128}).light_maps({15}).paper({15});
+        Efforts().bundles({16, 24, 32, 48, 64}).paths({64, 128}).light_maps({15}).paper({15});
     return {
         {{sky_sun, 30000, realistic}, main},
         {{sky_sun, 30000, bright}, main},
-        {{lamp_lit, 30000, realistic}, Efforts().bundles({16, 32, 64}).paths({64})},
+        {{lamp_lit, 30000, realistic}, Efforts().bundles({16, 32, 48}).paths({64})},
         {{furnace, 30000, BenchMaterial::white}, Efforts().bundles({32})},
         {{sky_sun, 5000, realistic}, Efforts().bundles({32}).paths({64}).light_maps({15}).paper({15})},
     };
@@ -49,23 +49,23 @@ std::vector<PlannedScene> full_plan() {
         for (BenchMaterial material : {realistic, bright}) {
             plan.push_back({{light, 30000, material},
                             Efforts()
-                                .bundles({8, 16, 32, 64, 128})
+                                .bundles({8, 16, 24, 32, 48, 64, 128})
                                 .asked({0.1, 0.05, 0.03})
                                 .paths({16, 64, 128, 256})
                                 .light_maps({15, 100})
                                 .paper({15, 100, 1000})});
             plan.push_back({{light, 5000, material},
                             Efforts()
-                                .bundles({8, 16, 32, 64, 128})
+                                .bundles({8, 16, 24, 32, 48, 64, 128})
                                 .paths({16, 64, 128, 256})
                                 .light_maps({15, 100})
                                 .paper({15, 100})});
             plan.push_back({{light, 150000, material},
                             Efforts().bundles({16, 32, 64}).paths({16, 64}).light_maps({15, 100}).paper({15, 100})});
         }
-    plan.push_back({{sky_sun_relit, 30000, realistic}, Efforts().bundles({16, 32, 64})});
-    plan.push_back({{one_light, 5000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
-    plan.push_back({{many_lights, 5000, realistic}, Efforts().bundles({8, 16, 32, 64, 128}).paths({64})});
+    plan.push_back({{sky_sun_relit, 30000, realistic}, Efforts().bundles({8, 16, 24, 32, 48, 64, 128})});
+    plan.push_back({{one_light, 5000, realistic}, Efforts().bundles({8, 16, 24, 32, 48, 64, 128}).paths({64})});
+    plan.push_back({{many_lights, 5000, realistic}, Efforts().bundles({8, 16, 24, 32, 48, 64, 128}).paths({64})});
     plan.push_back({{point_light, 5000, realistic},
                     Efforts().bundles({16, 32, 64, 128}).paths({16, 64, 128, 256}).light_maps({15}).paper({15})});
     plan.push_back({{furnace, 30000, BenchMaterial::white},

@@ -11,6 +11,7 @@
 #include "tests/benchmark/foliage_tables.h"
 #include "tests/benchmark/measure.h"
 
+#include <algorithm>
 #include <cstdlib>
 #include <iomanip>
 #include <nlohmann/json.hpp>
@@ -33,6 +34,7 @@ ReferenceOptions reference_options(const FoliageBenchmarkOptions& options) {
                                                                 : options.references_folder;
     reference.cache_folder = options.cache_folder.empty() ? options.output_folder / "references" : options.cache_folder;
     reference.paths_per_side = options.reference_paths;
+    reference.paths_per_chunk = std::clamp<std::uint64_t>(options.reference_paths / 2, 1, 256);
     return reference;
 }
 
