@@ -46,7 +46,7 @@ for tree in "${trees[@]}"; do
         light=$(environment_source "$environment")
         [ -n "$light" ] || continue
         tile=$work/$tree-${environment%.*}.png
-        "$program" --quiet shade "$source" --environment "$light" --image "$tile" --image-size "$size" --samples "$samples"
+        "$program" shade "$source" --quiet --environment "$light" --image "$tile" --image-size "$size" --samples "$samples"
         tiles+=("$tile")
         echo "made: $tree, $environment"
     done
