@@ -42,9 +42,12 @@ glm::dvec3 inner_product(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
 std::vector<Rgb> AndersonAcceleration::next(const std::vector<Rgb>& x, const std::vector<Rgb>& image) {
     std::vector<Rgb> residual = difference(image, x);
     if (!last_residual_.empty()) {
-        steps_.push_back({difference(residual, last_residual_), difference(image, last_image_)});
+        steps_.push_back({difference(residual, last_residual_), difference(image, last_image_), {}});
         if (int(steps_.size()) > depth_)
             steps_.pop_front();
+        Step& newest = steps_.back();
+        for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)
+            newest.products.push_back(inner_product(newest.residual_change, step->residual_change));
     }
     const auto depth = Eigen::Index(steps_.size());
     std::vector<glm::vec3> weights(steps_.size(), glm::vec3(0.f));
@@ -58,12 +61,9 @@ std::vector<Rgb> AndersonAcceleration::next(const std::vector<Rgb>& x, const std
         const glm::dvec3 projection = inner_product(steps_[std::size_t(i)].residual_change, residual);
         for (int c = 0; c < 3; ++c)
             right[c][i] = projection[c];
-        for (Eigen::Index j = 0; j <= i; ++j) {
-            const glm::dvec3 product =
-                inner_product(steps_[std::size_t(i)].residual_change, steps_[std::size_t(j)].residual_change);
+        for (Eigen::Index j = 0; j <= i; ++j)
             for (int c = 0; c < 3; ++c)
-                gram[c](i, j) = gram[c](j, i) = product[c];
-        }
+                gram[c](i, j) = gram[c](j, i) = steps_[std::size_t(i)].products[std::size_t(i - j)][c];
     }
     for (int c = 0; c < 3 && depth > 0; ++c) {
         // The least-norm solution: steps that no longer differ get no weight instead of a huge one.

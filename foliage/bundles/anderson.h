@@ -19,6 +19,7 @@ class AndersonAcceleration {
   private:
     struct Step {
         std::vector<Rgb> residual_change, image_change;
+        std::deque<glm::dvec3> products; ///< of residual_change with its own and earlier steps', newest first
     };
     int depth_;
     std::deque<Step> steps_;

@@ -160,10 +160,73 @@ double largest_albedo(const std::vector<Optics>& optics) {
 
 } // namespace
 
+void BounceOperator::remove_echoes(const OutsideLight& outside, const std::vector<Optics>& optics,
+                                   SweepResult& light) const {
+    const Links& links = transport_.links;
+    const std::size_t sides = light.radiance.size();
+    // What one line adds to a side's radiance, by share of the row: k = rho (1 - open) / (lines - 1), and the row's
+    // mean m.
+    std::vector<Rgb> echo(sides), echo_mean(sides);
+    auto row_mean = [&](std::size_t side, const Rgb* values) {
+        const Rgb4 d;
+        Rgb sum;
+        const std::uint32_t begin = links.begin[side], end = links.begin[side + 1];
+        hn::Store(sum_row(&links.neighbours[begin], links.neighbours.data() + end, values), d, &sum.r);
+        return sum.vec() / float(end - begin);
+    };
+    parallel_blocks(sides, 2 * kPatchBlock, [&](std::size_t from, std::size_t to) {
+        for (std::size_t side = from; side < to; ++side) {
+            const std::uint32_t lines = links.begin[side + 1] - links.begin[side];
+            if (lines < 2)
+                continue;
+            const glm::vec3 rho = optics[scene_.patches[side / 2].optics].reflectance;
+            const glm::vec3 share = rho * (1 - outside.open[side]) / float(lines - 1);
+            echo[side] = Rgb::from(share);
+            echo_mean[side] = Rgb::from(share * row_mean(side, light.radiance.data()));
+        }
+    });
+    std::vector<Rgb> irradiance(sides);
+    parallel_blocks(sides, 2 * kPatchBlock, [&](std::size_t from, std::size_t to) {
+        for (std::size_t side = from; side < to; ++side) {
+            const glm::vec3 excess =
+                row_mean(side, echo_mean.data()) - row_mean(side, echo.data()) * light.radiance[side].vec();
+            irradiance[side] = Rgb::from(kPi * (1 - outside.open[side]) * excess);
+        }
+    });
+    std::vector<Rgb> correction(sides);
+    for (std::size_t patch = 0; patch < scene_.patches.size(); ++patch) {
+        const Optics& optic = optics[scene_.patches[patch].optics];
+        const glm::vec3 rho = optic.reflectance / kPi, tau = optic.transmittance / kPi;
+        const glm::vec3 front = irradiance[2 * patch].vec(), back = irradiance[2 * patch + 1].vec();
+        correction[2 * patch] = Rgb::from(rho * front + tau * back);
+        correction[2 * patch + 1] = Rgb::from(rho * back + tau * front);
+    }
+    constexpr int kOrders = 3;
+    correction = spread(outside, optics, correction, kOrders);
+    for (std::size_t side = 0; side < sides; ++side)
+        light.radiance[side] = Rgb::from(glm::max(light.radiance[side].vec() + correction[side].vec(), 0.f));
+}
+
+std::vector<Rgb> BounceOperator::spread(const OutsideLight& outside, const std::vector<Optics>& optics,
+                                        const std::vector<Rgb>& difference, int orders) const {
+    OutsideLight none;
+    none.irradiance.resize(difference.size());
+    none.open = outside.open;
+    none.down = outside.down;
+    SweepResult spreading;
+    spreading.radiance = difference;
+    for (int order = 0; order < orders; ++order) {
+        std::vector<Rgb> scattered = scatter(none, optics, spreading, -1);
+        for (std::size_t s = 0; s < scattered.size(); ++s)
+            spreading.radiance[s] = Rgb::from(difference[s].vec() + scattered[s].vec());
+    }
+    return std::move(spreading.radiance);
+}
+
 SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector<Optics>& optics,
                                   const SweepLimits& limits, const std::vector<Rgb>& start) const {
     constexpr int kMostSweeps = 1000;
-    constexpr int kAccelerationDepth = 3;
+    constexpr int kAccelerationDepth = 2;
     SweepResult result;
     result.radiance = start.size() == outside.irradiance.size() ? start : std::vector<Rgb>(outside.irradiance.size());
     if (result.radiance.empty())
@@ -198,6 +261,8 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
     }
     for (Rgb& value : result.radiance)
         value = Rgb::from(glm::max(value.vec(), 0.f));
+    if (limits.max_bounces == 0)
+        remove_echoes(outside, optics, result);
     return result;
 }
 

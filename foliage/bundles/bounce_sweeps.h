@@ -54,6 +54,15 @@ class BounceOperator {
     std::vector<Rgb> scatter(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepResult& light,
                              int half, std::vector<Rgb>* irradiance = nullptr) const;
 
+    /// Takes out of a solution what lines echo. A line from i to j stands in both rows, so light that went along it
+    /// comes back along it more often than chance would have it, and crowns of little absorption turn out too bright by
+    /// O(1 / lines). Corrected to first order: each row sees its neighbour's radiance as the neighbour's other lines
+    /// give it.
+    void remove_echoes(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& light) const;
+    /// The first `orders` scatterings of differences between two solutions: what an error does to the light around it.
+    std::vector<Rgb> spread(const OutsideLight& outside, const std::vector<Optics>& optics,
+                            const std::vector<Rgb>& difference, int orders) const;
+
   private:
     std::vector<glm::vec3> light_ground(const OutsideLight& outside, const std::vector<Rgb>& radiance) const;
     std::vector<Rgb> gather_ground(const std::vector<glm::vec3>& ground_excess) const;

@@ -138,14 +138,17 @@ void collect_links(const RasterScratch& raster, const Projection& projection, co
 void compress(const PatchScene& scene, const std::vector<DirectionLinks>& directions, std::uint32_t half,
               Links& links) {
     const std::size_t side_count = 2 * scene.patches.size();
+    const auto inside_wood = [&](Side side) {
+        return side % 2 == 1 && scene.patches[side / 2].kind == PatchKind::bark;
+    };
     std::vector<std::uint32_t> cursor[2];
     const std::size_t bounds[3] = {0, half, directions.size()};
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         cursor[h].assign(side_count, 0);
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
             for (const Pair& pair : directions[d].pairs) {
-                ++cursor[h][pair.near_side];
-                ++cursor[h][pair.far_side];
+                cursor[h][pair.near_side] += !inside_wood(pair.near_side);
+                cursor[h][pair.far_side] += !inside_wood(pair.far_side);
             }
     });
     links.begin.resize(side_count + 1);
@@ -165,20 +168,21 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     }
     links.begin[side_count] = running;
     links.neighbours.resize(running);
-    // A side that meets nobody takes what its open share leaves from its patch's front if it is the inside of bark,
-    // else (hidden in wood, or all its lines end outside) from the patch before it, its neighbour on the branch. Rows
-    // stay stochastic.
+    // The inside of wood is as dim as a second reflection of its outside. Another side that meets nobody (hidden in
+    // wood, or all its lines end outside) takes what its open share leaves from the patch before it, its neighbour on
+    // the branch. Rows stay stochastic.
     for (Side side : lonely) {
-        const bool inside = side % 2 == 1 && scene.patches[side / 2].kind == PatchKind::bark;
-        links.neighbours[links.begin[side]] = inside      ? side - 1
-                                              : side >= 2 ? side - 2
+        links.neighbours[links.begin[side]] = inside_wood(side) ? side - 1
+                                              : side >= 2       ? side - 2
                                                           : std::min<Side>(side + 2, Side(side_count) - 2 + side % 2);
     }
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
             for (const Pair& pair : directions[d].pairs) {
-                links.neighbours[cursor[h][pair.near_side]++] = pair.far_side;
-                links.neighbours[cursor[h][pair.far_side]++] = pair.near_side;
+                if (!inside_wood(pair.near_side))
+                    links.neighbours[cursor[h][pair.near_side]++] = pair.far_side;
+                if (!inside_wood(pair.far_side))
+                    links.neighbours[cursor[h][pair.far_side]++] = pair.near_side;
             }
     });
 }

@@ -54,10 +54,10 @@ struct Links {
 };
 
 struct BundleSettings {
-    int sky_directions = 64;  ///< lines that only show their ends
+    int sky_directions = 24;  ///< lines that only show their ends
     int link_directions = 16; ///< lines that show all their neighbours
     float sky_pixels = 4;     ///< mean pixels a leaf
-    float link_pixels = 4;
+    float link_pixels = 2;    ///< more directions beat more pixels: neighbours in one direction are much the same
     std::uint64_t seed = 1;
 };
 

@@ -14,6 +14,16 @@ namespace {
 
 using namespace bundles;
 
+/// What one radiance a leaf side costs however many lines are drawn (an MRE): light leaves a side as if it were lit
+/// evenly. Measured on the benchmark's 30k crowns with 640 directions: 1.0 % with bright leaves, a little less with
+/// realistic ones.
+constexpr double kUniformSideError = 0.01;
+
+/// The sampling error that leaves room for it.
+double sampling_error_for(double error) {
+    return std::sqrt(std::max(error * error - kUniformSideError * kUniformSideError, 1e-8));
+}
+
 class BundlesTransport : public Transport {
   public:
     BundlesTransport(const PatchScene& scene, const BundleEffort& effort, const ShadingOptions& options, bool adaptive,
@@ -110,7 +120,12 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     for (int h = 0; h < 2; ++h)
         radiance[h] =
             bounces_->scatter(outside(lit.sky, lit.sky.halves[h], lit.beams, h), optics_, lit.light, h, &irradiance[h]);
-    lit.sampling_error = half_difference_error(scene_, radiance[0], radiance[1]);
+    constexpr int kSpreadOrders = 3;
+    std::vector<Rgb> difference(lit.light.radiance.size());
+    for (std::size_t s = 0; s < difference.size(); ++s)
+        difference[s] = Rgb::from(0.5f * (radiance[0][s].vec() - radiance[1][s].vec()));
+    lit.sampling_error = half_difference_error(scene_, lit.light.radiance,
+                                               bounces_->spread(lit.outside, optics_, difference, kSpreadOrders));
     lit.irradiance = std::move(irradiance[0]);
     for (std::size_t s = 0; s < lit.irradiance.size(); ++s)
         lit.irradiance[s] = Rgb::from(0.5f * (lit.irradiance[s].vec() + irradiance[1][s].vec()));
@@ -146,8 +161,7 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
         const double area = facets_.patch_area[p] * to_square_metres;
         const Optics& optics = optics_[scene_.patches[p].optics];
-        const int sides = scene_.patches[p].kind == PatchKind::bark ? 1 : 2; // the inside of bark is shut
-        for (int k = 0; k < sides; ++k) {
+        for (int k = 0; k < 2; ++k) {
             const std::size_t s = 2 * p + std::size_t(k);
             solution.energy_in += area * luminance(lit.outside.irradiance[s].vec());
             solution.energy_absorbed +=
@@ -165,7 +179,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     Lit lit;
     for (int attempt = 1;; ++attempt) {
         lit = light(environment, progress, solution.report);
-        const double ratio = lit.sampling_error / options_.error;
+        const double ratio = lit.sampling_error / sampling_error_for(options_.error);
         if (!adaptive_ || ratio <= 1.05 || attempt == kMostAttempts)
             break;
         const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
@@ -181,7 +195,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     fill(solution, lit);
     balance(solution, lit);
     solution.residuals = lit.light.residuals;
-    solution.estimated_error = lit.sampling_error;
+    solution.estimated_error = std::hypot(lit.sampling_error, kUniformSideError);
     if (options_.for_hosts)
         solution.bent_normal = mean_open_directions(facets_, transport_);
     last_radiance_ = std::move(lit.light.radiance);
@@ -204,7 +218,8 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree&, const ShadingOptions& options,
                                                   Progress& progress) {
-    const int directions = options.effort > 0 ? options.effort : directions_for_error(options.error);
+    const int directions =
+        options.effort > 0 ? options.effort : directions_for_error(sampling_error_for(options.error));
     const BundleEffort effort = effort_of_directions(directions, options.seed);
     return std::make_unique<BundlesTransport>(scene, effort, options, options.effort == 0, progress);
 }

@@ -21,20 +21,19 @@ std::vector<glm::vec3> leaf_sides(const PatchScene& scene, const std::vector<Rgb
 
 } // namespace
 
-double half_difference_error(const PatchScene& scene, const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-    const std::vector<glm::vec3> first = leaf_sides(scene, a), second = leaf_sides(scene, b);
-    if (first.empty())
+double half_difference_error(const PatchScene& scene, const std::vector<Rgb>& mean,
+                             const std::vector<Rgb>& half_differences) {
+    const std::vector<glm::vec3> value = leaf_sides(scene, mean), difference = leaf_sides(scene, half_differences);
+    if (value.empty())
         return 0;
-    glm::dvec3 mean(0.0), error(0.0);
-    for (std::size_t i = 0; i < first.size(); ++i)
-        mean += 0.5 * (glm::dvec3(first[i]) + glm::dvec3(second[i])) / double(first.size());
-    for (std::size_t i = 0; i < first.size(); ++i)
-        for (int c = 0; c < 3; ++c) {
-            const double value = 0.5 * (double(first[i][c]) + second[i][c]), floor = std::max(value, 0.05 * mean[c]);
-            if (floor > 0)
-                error[c] += 0.5 * std::abs(double(first[i][c]) - second[i][c]) / floor;
-        }
-    return (error.x + error.y + error.z) / (3 * double(first.size()));
+    glm::dvec3 average(0.0), error(0.0);
+    for (const glm::vec3& side : value)
+        average += glm::dvec3(side) / double(value.size());
+    for (std::size_t i = 0; i < value.size(); ++i)
+        for (int c = 0; c < 3; ++c)
+            if (const double floor = std::max(double(value[i][c]), 0.05 * average[c]); floor > 0)
+                error[c] += std::abs(double(difference[i][c])) / floor;
+    return (error.x + error.y + error.z) / (3 * double(value.size()));
 }
 
 } // namespace kokage::bundles

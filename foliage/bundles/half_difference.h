@@ -5,8 +5,10 @@
 
 namespace kokage::bundles {
 
-/// Estimated MRE (DESIGN 3) of (a + b) / 2. Half the difference of two independent, equally distributed estimates has
-/// the same distribution as the error of their mean, so nothing needs calibrating.
-double half_difference_error(const PatchScene& scene, const std::vector<Rgb>& a, const std::vector<Rgb>& b);
+/// Estimated MRE (DESIGN 3) of the mean of two estimates. `half_differences`: half of what they differ by, per side. It
+/// has the same distribution as the error of their mean when they are independent and alike, so nothing needs
+/// calibrating.
+double half_difference_error(const PatchScene& scene, const std::vector<Rgb>& mean,
+                             const std::vector<Rgb>& half_differences);
 
 } // namespace kokage::bundles

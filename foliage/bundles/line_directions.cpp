@@ -17,10 +17,10 @@ glm::mat3 random_rotation(Random& random) {
     return glm::mat3_cast(glm::quat(b * std::cos(u2), a * std::sin(u1), a * std::cos(u1), b * std::sin(u2)));
 }
 
-void add_half(int count, Random& random, std::vector<glm::vec3>& directions) {
-    const glm::mat3 rotation = random_rotation(random);
+/// Every second point of a Fibonacci hemisphere of `count` points, from `first` on, turned by a rotation.
+void add_half(int count, int first, const glm::mat3& rotation, std::vector<glm::vec3>& directions) {
     const double golden = kPiDouble * (3 - std::sqrt(5.0));
-    for (int i = 0; i < count; ++i) {
+    for (int i = first; i < count; i += 2) {
         const double z = (i + 0.5) / count, r = std::sqrt(1 - z * z), azimuth = golden * i;
         glm::vec3 d = rotation * glm::vec3(r * std::cos(azimuth), r * std::sin(azimuth), z);
         if (d.y > 0)
@@ -61,10 +61,10 @@ std::vector<Cell> coarse_cells(const Image& image) {
 LineDirections make_line_directions(int count, std::uint64_t seed) {
     LineDirections lines;
     lines.half = std::uint32_t(std::max(1, (count + 1) / 2));
-    for (int h = 0; h < 2; ++h) {
-        Random random(seed, 0x6c696e65 + h);
-        add_half(int(lines.half), random, lines.directions);
-    }
+    Random random(seed, 0x6c696e65);
+    const glm::mat3 rotation = random_rotation(random);
+    for (int h = 0; h < 2; ++h)
+        add_half(2 * int(lines.half), h, rotation, lines.directions);
     return lines;
 }
 
