@@ -1,4 +1,5 @@
 // `kokage bench`: time against error, in tables and plots.
+#include "common/services/error.h"
 #include "tests/benchmark/foliage_benchmark.h"
 #include "viewer/command.h"
 
@@ -21,9 +22,7 @@ Command bench_command(CLI::App& program) {
     CLI::App* app = program.add_subcommand("bench", "Measure every method: error against time");
     app->footer("\nExample: kokage bench foliage --quick -o results");
     const auto what = std::make_shared<std::string>();
-    app->add_option("WHAT", *what, "What to measure: foliage")
-        ->required()
-        ->check(CLI::IsMember({"foliage"}).description(""));
+    app->add_option("WHAT", *what, "What to measure: foliage")->required();
     app->add_option("-o,--output", options->output_folder,
                     "Folder for foliage.json, foliage.md and plots; made if it is missing")
         ->type_name("FOLDER")
@@ -38,7 +37,9 @@ Command bench_command(CLI::App& program) {
         ->type_name("N")
         ->check(CLI::PositiveNumber.description(""))
         ->capture_default_str();
-    return {app, [options](const CommandContext& context) {
+    return {app, [options, what](const CommandContext& context) {
+                if (*what != "foliage")
+                    throw InputError("there is no benchmark '" + *what + "'; there is: foliage");
                 options->threads = context.threads;
                 NoText nothing;
                 std::ostream silent(&nothing);

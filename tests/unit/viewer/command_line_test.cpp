@@ -30,5 +30,29 @@ TEST(CommandLine, UnknownCommandIsNamed) {
     EXPECT_NE(run.errors.find("prune"), std::string::npos);
 }
 
+TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
+    TemporaryFolder folder;
+    const std::string help = run_kokage({"--help"}, folder.path()).output;
+    for (const std::string command : {"grow", "describe", "shade", "compare", "bench"}) {
+        EXPECT_NE(help.find("\n  " + command + " "), std::string::npos) << command;
+        const ProgramRun run = run_kokage({command, "--help"}, folder.path());
+        EXPECT_EQ(run.status, 0);
+        EXPECT_NE(run.output.find("Example: kokage " + command + " "), std::string::npos) << run.output;
+        EXPECT_NE(run.output.find("--quiet"), std::string::npos);
+        EXPECT_NE(run.output.find("--threads"), std::string::npos);
+    }
+}
+
+TEST(CommandLine, UnknownBenchmarksAreRefused) {
+    TemporaryFolder folder;
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"bench"}, {"bench", "foliage"}, {"bench", "roots", "-o", "r"}}) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2);
+        EXPECT_TRUE(is_one_complaint(run.errors));
+    }
+    EXPECT_TRUE(folder.files().empty());
+}
+
 } // namespace
 } // namespace kokage
