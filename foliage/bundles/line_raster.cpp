@@ -133,8 +133,12 @@ void ProjectBatch(const PolygonGroup& group, std::size_t first, const Projection
     const auto to_first = hn::MulAdd(hn::Sub(first_column, hn::Load(d, batch.u[0])), slope_u,
                                      hn::Mul(hn::Sub(first_row, hn::Load(d, batch.v[0])), slope_v));
     const auto scale = hn::Set(d, depths.scale);
+    // At the corner of a steep polygon's box the plane lies far outside the depths, and a conversion would saturate.
+    // Whole turns are taken off first: keys wrap, so the pixels that are covered get their own depths all the same.
     const auto fixed = [&](auto value) {
-        return hn::ShiftLeft<1>(hn::BitCast(dk, hn::ConvertTo(di, hn::Mul(value, scale))));
+        const auto half = hn::Mul(value, scale), turns = hn::Round(hn::Mul(half, hn::Set(d, 0x1p-31f)));
+        const auto wrapped = hn::NegMulAdd(turns, hn::Set(d, 0x1p31f), half);
+        return hn::ShiftLeft<1>(hn::BitCast(dk, hn::ConvertTo(di, wrapped)));
     };
     hn::Store(fixed(hn::Add(hn::Sub(depth, hn::Set(d, depths.low)), to_first)), dk, batch.key0);
     hn::Store(fixed(slope_u), dk, batch.key_du);
