@@ -4,6 +4,10 @@
 #include "foliage/bundles/drawn_lights.h"
 #include "foliage/bundles/half_difference.h"
 #include "foliage/bundles/outside_light.h"
+#include "foliage/capture_directions.h"
+#include "foliage/divided_leaves.h"
+#include "foliage/light_map_field.h"
+#include "foliage/path_traced.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,21 +18,16 @@ namespace {
 
 using namespace bundles;
 
-/// What one radiance a leaf side costs however many lines are drawn (an MRE): light leaves a side as if it were lit
-/// evenly. Measured on the benchmark's 30k crowns with 640 directions: 1.0 % with bright leaves, a little less with
-/// realistic ones.
-constexpr double kUniformSideError = 0.01;
-
-/// The sampling error that leaves room for it.
-double sampling_error_for(double error) {
-    return std::sqrt(std::max(error * error - kUniformSideError * kUniformSideError, 1e-8));
+/// The sampling error that leaves room for what sampling can't mend.
+double sampling_error_for(double error, double uniform_side_error) {
+    return std::sqrt(std::max(error * error - uniform_side_error * uniform_side_error, 1e-8));
 }
 
 class BundlesTransport : public Transport {
   public:
     BundlesTransport(const PatchScene& scene, const BundleEffort& effort, const ShadingOptions& options, bool adaptive,
-                     Progress& progress)
-        : scene_(scene), options_(options), adaptive_(adaptive), optics_(scene.optics) {
+                     Progress& progress, const Tree* tree)
+        : scene_(scene), tree_(tree), options_(options), adaptive_(adaptive), optics_(scene.optics) {
         Stopwatch watch;
         facets_ = make_facets(scene);
         pending_.stages.push_back({"facets", watch.cpu(), watch.wall()});
@@ -54,8 +53,10 @@ class BundlesTransport : public Transport {
     OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
     void fill(Solution& solution, const Lit& lit) const;
     void balance(Solution& solution, const Lit& lit) const;
+    void add_host_data(const Environment& environment, Solution& solution, Progress& progress) const;
 
     const PatchScene& scene_;
+    const Tree* tree_; ///< null: no light maps
     ShadingOptions options_;
     bool adaptive_;
     std::vector<Optics> optics_;
@@ -171,6 +172,24 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
     }
 }
 
+/// Bent normals, and light maps as [F] places them, showing the solved light.
+void BundlesTransport::add_host_data(const Environment& environment, Solution& solution, Progress& progress) const {
+    Stopwatch watch;
+    solution.bent_normal = mean_open_directions(facets_, transport_);
+    if (tree_ && scene_.leaf_count == tree_->leaves.size() && scene_.leaf_count > 0) {
+        constexpr int kDefaultMaps = 15;
+        const RayQueries queries(scene_);
+        const kokage::GroundGrid grid = kokage::make_ground_grid(scene_);
+        LightMapFieldOptions maps;
+        maps.maps = options_.maps > 0 ? options_.maps : kDefaultMaps;
+        maps.bands = options_.bands;
+        LightMapField field(queries, grid, *tree_, maps, progress);
+        field.update(solution.radiance, {});
+        solution.light_maps = field.export_maps(cell_means(field.maps().directions(), environment.remainder));
+    }
+    solution.report.stages.push_back({"bent normals and light maps", watch.cpu(), watch.wall()});
+}
+
 Solution BundlesTransport::solve(const Environment& environment, Progress& progress) {
     constexpr int kMostAttempts = 4;
     Solution solution;
@@ -179,7 +198,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     Lit lit;
     for (int attempt = 1;; ++attempt) {
         lit = light(environment, progress, solution.report);
-        const double ratio = lit.sampling_error / sampling_error_for(options_.error);
+        const double ratio = lit.sampling_error / sampling_error_for(options_.error, effort_.uniform_side_error);
         if (!adaptive_ || ratio <= 1.05 || attempt == kMostAttempts)
             break;
         const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
@@ -194,10 +213,13 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     }
     fill(solution, lit);
     balance(solution, lit);
+    if (adaptive_ && lit.sampling_error > 1.05 * sampling_error_for(options_.error, effort_.uniform_side_error))
+        solution.report.warnings.push_back(
+            "the asked error was not reached; ask for path-traced, or for a larger error");
     solution.residuals = lit.light.residuals;
-    solution.estimated_error = std::hypot(lit.sampling_error, kUniformSideError);
+    solution.estimated_error = std::hypot(lit.sampling_error, effort_.uniform_side_error);
     if (options_.for_hosts)
-        solution.bent_normal = mean_open_directions(facets_, transport_);
+        add_host_data(environment, solution, progress);
     last_radiance_ = std::move(lit.light.radiance);
     solution.transport_bytes = bytes();
     auto count = [&](const char* name, std::uint64_t value) { solution.report.counts.push_back({name, value}); };
@@ -213,15 +235,28 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress) {
-    return std::make_unique<BundlesTransport>(scene, effort, options, false, progress);
+    return std::make_unique<BundlesTransport>(scene, effort, options, false, progress, nullptr);
 }
 
-std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree&, const ShadingOptions& options,
-                                                  Progress& progress) {
-    const int directions =
-        options.effort > 0 ? options.effort : directions_for_error(sampling_error_for(options.error));
-    const BundleEffort effort = effort_of_directions(directions, options.seed);
-    return std::make_unique<BundlesTransport>(scene, effort, options, options.effort == 0, progress);
+std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree& tree,
+                                                  const ShadingOptions& options, Progress& progress) {
+    const bool adaptive = options.effort == 0;
+    auto make = [&](const PatchScene& patches, double uniform_side_error) -> std::unique_ptr<Transport> {
+        const double sampling_error = sampling_error_for(options.error, uniform_side_error);
+        BundleEffort effort =
+            effort_of_directions(adaptive ? directions_for_error(sampling_error) : options.effort, options.seed);
+        effort.uniform_side_error = uniform_side_error;
+        effort.tolerance = std::min(effort.tolerance, 0.04 * options.error);
+        return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, progress, &tree);
+    };
+    // A fifth of room for sampling: with less, the number of lines runs away.
+    constexpr double kRoom = 1.2;
+    if (!adaptive || options.error >= kRoom * kUniformSideError)
+        return make(scene, kUniformSideError);
+    if (options.error >= kRoom * kUniformSideError / 2 && can_divide_leaves(scene, tree))
+        return make_divided_transport(scene, tree, 1,
+                                      [&](const PatchScene& divided) { return make(divided, kUniformSideError / 2); });
+    return make_path_traced_transport(scene, tree, options, progress);
 }
 
 } // namespace kokage
