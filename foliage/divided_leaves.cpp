@@ -54,7 +54,9 @@ class DividedTransport : public Transport {
         for (glm::vec3& normal : solution.bent_normal)
             if (const float length = glm::length(normal); length > 0)
                 normal /= length;
-        solution.report.counts.push_back({"parts of leaves", divided_.patches.size()});
+        solution.report.counts.push_back({"patches after division", divided_.patches.size()});
+        solution.report.warnings.push_back(
+            "leaves were divided into parts: one radiance a side can't reach the asked error");
         return solution;
     }
     void set_optics(const std::vector<Optics>& optics) override { transport_->set_optics(optics); }

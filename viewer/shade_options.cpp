@@ -85,7 +85,7 @@ void add_output_options(CLI::App& app, ShadeOptions& o) {
 
 void complete_method(ShadeOptions& o) {
     ShadingOptions& s = o.shading;
-    s.for_hosts = !o.output.empty(); // the file takes bent normals and light maps along
+    s.for_hosts = !o.output.empty(); // the file takes light maps along
     s.method = method_from_name(o.method);
     if (o.gather != "rule" && o.gather != "cosine")
         throw InputError("--gather: '" + o.gather + "' is not known; give rule or cosine");

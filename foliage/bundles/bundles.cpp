@@ -231,6 +231,24 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     return solution;
 }
 
+/// Path tracing where bundles can't reach the asked error; the report says so.
+class PathTracedInstead : public Transport {
+  public:
+    explicit PathTracedInstead(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
+    Solution solve(const Environment& environment, Progress& progress) override {
+        Solution solution = transport_->solve(environment, progress);
+        solution.report.warnings.push_back(
+            "paths were traced instead of bundles: one radiance a leaf side, even in parts, "
+            "can't reach the asked error");
+        return solution;
+    }
+    void set_optics(const std::vector<Optics>& optics) override { transport_->set_optics(optics); }
+    std::size_t bytes() const override { return transport_->bytes(); }
+
+  private:
+    std::unique_ptr<Transport> transport_;
+};
+
 } // namespace
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
@@ -256,7 +274,7 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
     if (options.error >= kRoom * kUniformSideError / 2 && can_divide_leaves(scene, tree))
         return make_divided_transport(scene, tree, 1,
                                       [&](const PatchScene& divided) { return make(divided, kUniformSideError / 2); });
-    return make_path_traced_transport(scene, tree, options, progress);
+    return std::make_unique<PathTracedInstead>(make_path_traced_transport(scene, tree, options, progress));
 }
 
 } // namespace kokage
