@@ -77,8 +77,8 @@ std::vector<Rgb> BounceOperator::scatter(const OutsideLight& outside, const std:
                                          const SweepResult& light, int half,
                                          std::vector<Rgb>* irradiance_of_sides) const {
     const Links& links = transport_.links;
-    const bool ground = !light.ground_excess.empty();
-    const std::vector<Rgb> from_ground = ground ? gather_ground(light.ground_excess) : std::vector<Rgb>();
+    const bool ground = !light.from_ground.empty();
+    const std::vector<Rgb>& from_ground = light.from_ground;
     std::vector<Rgb> scattered(light.radiance.size());
     if (irradiance_of_sides)
         irradiance_of_sides->resize(light.radiance.size());
@@ -201,7 +201,7 @@ void BounceOperator::remove_echoes(const OutsideLight& outside, const std::vecto
         correction[2 * patch] = Rgb::from(rho * front + tau * back);
         correction[2 * patch + 1] = Rgb::from(rho * back + tau * front);
     }
-    constexpr int kOrders = 3;
+    constexpr int kOrders = 2;
     correction = spread(outside, optics, correction, kOrders);
     for (std::size_t side = 0; side < sides; ++side)
         light.radiance[side] = Rgb::from(glm::max(light.radiance[side].vec() + correction[side].vec(), 0.f));
@@ -227,6 +227,8 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
                                   const SweepLimits& limits, const std::vector<Rgb>& start) const {
     constexpr int kMostSweeps = 1000;
     constexpr int kAccelerationDepth = 2;
+    constexpr int kGroundSweeps =
+        3; // by then what the tree sends to the ground is right within a few percent of little
     SweepResult result;
     result.radiance = start.size() == outside.irradiance.size() ? start : std::vector<Rgb>(outside.irradiance.size());
     if (result.radiance.empty())
@@ -239,8 +241,8 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
     AndersonAcceleration acceleration(kAccelerationDepth);
     const int most = limits.max_bounces > 0 ? limits.max_bounces : kMostSweeps;
     for (int sweep = 0; sweep < most; ++sweep) {
-        if (transport_.ground)
-            result.ground_excess = light_ground(outside, result.radiance);
+        if (transport_.ground && (sweep <= kGroundSweeps || limits.max_bounces > 0))
+            result.from_ground = gather_ground(light_ground(outside, result.radiance));
         std::vector<Rgb> next = scatter(outside, optics, result, -1);
         const Change change = change_between(result.radiance, next);
         result.residuals.push_back(change.largest_radiance > 0 ? change.largest / change.largest_radiance : 0.0);

@@ -38,9 +38,10 @@ struct SweepLimits {
 };
 
 struct SweepResult {
-    std::vector<Rgb> radiance;            ///< B per side
-    std::vector<double> residuals;        ///< per sweep: largest change of a side over the largest radiance
-    std::vector<glm::vec3> ground_excess; ///< per texel: B_ground - B_open_ground
+    std::vector<Rgb> radiance;     ///< B per side
+    std::vector<double> residuals; ///< per sweep: largest change of a side over the largest radiance
+    std::vector<Rgb>
+        from_ground; ///< per side: mean of (B_ground - B_open_ground) over its lines to the ground; empty without
 };
 
 class BounceOperator {

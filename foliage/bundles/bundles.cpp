@@ -121,7 +121,7 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     for (int h = 0; h < 2; ++h)
         radiance[h] =
             bounces_->scatter(outside(lit.sky, lit.sky.halves[h], lit.beams, h), optics_, lit.light, h, &irradiance[h]);
-    constexpr int kSpreadOrders = 3;
+    constexpr int kSpreadOrders = 2;
     std::vector<Rgb> difference(lit.light.radiance.size());
     for (std::size_t s = 0; s < difference.size(); ++s)
         difference[s] = Rgb::from(0.5f * (radiance[0][s].vec() - radiance[1][s].vec()));
