@@ -1,0 +1,218 @@
+// The sweeps against a dense solve, and what physics asks of them.
+#include "foliage/bundles/bounce_sweeps.h"
+#include "foliage/bundles/outside_light.h"
+#include "tests/unit/foliage/small_trees.h"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <gtest/gtest.h>
+#include <map>
+
+namespace kokage {
+namespace {
+
+using namespace bundles;
+
+struct TracedTree {
+    PatchScene scene;
+    Facets facets;
+    BundleTransport transport;
+    explicit TracedTree(PatchScene tree, int directions = 16) : scene(std::move(tree)), facets(make_facets(scene)) {
+        BundleSettings settings;
+        settings.sky_directions = settings.link_directions = directions;
+        transport = trace_bundles(scene, facets, settings, silent_progress());
+    }
+    OutsideLight outside(const Environment& environment) const {
+        const SkyLight sky = gather_sky(scene, facets, transport, environment.remainder, glm::vec3(0));
+        OutsideLight light;
+        light.irradiance = sky.all.irradiance;
+        light.open = sky.all.open;
+        light.down = sky.all.down;
+        light.near_radiance = sky.near_radiance;
+        light.open_ground_irradiance = sky.open_ground_irradiance;
+        if (transport.ground)
+            light.ground_irradiance.assign(GroundGrid::kSize * GroundGrid::kSize, sky.open_ground_irradiance);
+        return light;
+    }
+};
+
+PatchScene leaves_and_a_trunk(std::uint32_t leaves, const Optics& optics) {
+    PatchScene scene = test::random_crown(leaves, 3, optics);
+    scene.optics.push_back({glm::vec3(0.3f, 0.2f, 0.1f), glm::vec3(0)});
+    std::vector<glm::vec3> trunk;
+    for (int i = 0; i < 4; ++i) {
+        const float a = kPi / 2 * float(i), b = a + kPi / 2;
+        const glm::vec3 p(0.2f * std::cos(a), 0.5f, -0.2f * std::sin(a)),
+            q(0.2f * std::cos(b), 0.5f, -0.2f * std::sin(b));
+        const glm::vec3 up(0, 2, 0);
+        trunk.insert(trunk.end(), {p, q, q + up, p, q + up, p + up});
+    }
+    test::add_leaf(scene, trunk, 1);
+    scene.patches.back().kind = PatchKind::bark;
+    --scene.leaf_count;
+    return scene;
+}
+
+/// B = K B + B0, one channel, solved at once.
+std::vector<double> dense_solve(const TracedTree& tree, const OutsideLight& outside, std::size_t channel) {
+    const auto sides = Eigen::Index(2 * tree.scene.patches.size());
+    const Links& links = tree.transport.links;
+    Eigen::MatrixXd gather = Eigen::MatrixXd::Zero(sides, sides); // E / pi = gather B + E0 / pi
+    Eigen::VectorXd first(sides);
+    for (Eigen::Index s = 0; s < sides; ++s) {
+        const auto side = std::size_t(s);
+        for (std::uint32_t i = links.begin[side]; i < links.begin[side + 1]; ++i)
+            gather(s, links.neighbours[i]) +=
+                (1.0 - double(outside.open[side])) / double(links.begin[side + 1] - links.begin[side]);
+        first[s] = double(outside.irradiance[side].vec()[channel]) / kPiDouble;
+    }
+    Eigen::MatrixXd scattering = Eigen::MatrixXd::Zero(sides, sides);
+    for (Eigen::Index s = 0; s < sides; ++s) {
+        const Optics& optics = tree.scene.optics[tree.scene.patches[std::size_t(s) / 2].optics];
+        scattering(s, s) = optics.reflectance[channel];
+        scattering(s, s ^ 1) = optics.transmittance[channel];
+    }
+    const Eigen::VectorXd solution =
+        (Eigen::MatrixXd::Identity(sides, sides) - scattering * gather).partialPivLu().solve(scattering * first);
+    return {solution.begin(), solution.end()};
+}
+
+TEST(BundlesBounceSweeps, ManyBouncesAreTheDenseSolve) {
+    for (const Optics& optics : {test::realistic_leaf(), test::bright_leaf()}) {
+        const TracedTree tree(leaves_and_a_trunk(80, optics));
+        const OutsideLight outside = tree.outside(test::sky_and_sun());
+        SweepLimits limits;
+        limits.max_bounces = 300;
+        const SweepResult result =
+            BounceOperator(tree.scene, tree.transport).solve(outside, tree.scene.optics, limits, {});
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            const std::vector<double> expected = dense_solve(tree, outside, channel);
+            for (std::size_t s = 0; s < expected.size(); ++s)
+                ASSERT_NEAR(result.radiance[s].vec()[channel], expected[s], 1e-5 * (1 + expected[s])) << s;
+        }
+    }
+}
+
+TEST(BundlesBounceSweeps, OneBounceIsTheFirstScattering) {
+    const TracedTree tree(leaves_and_a_trunk(30, test::bright_leaf()));
+    const OutsideLight outside = tree.outside(test::sky_and_sun());
+    SweepLimits limits;
+    limits.max_bounces = 1;
+    const SweepResult result = BounceOperator(tree.scene, tree.transport).solve(outside, tree.scene.optics, limits, {});
+    ASSERT_EQ(result.residuals.size(), 1u);
+    for (std::size_t p = 0; p < tree.scene.patches.size(); ++p) {
+        const Optics& optics = tree.scene.optics[tree.scene.patches[p].optics];
+        const glm::vec3 front = outside.irradiance[2 * p].vec(), back = outside.irradiance[2 * p + 1].vec();
+        const glm::vec3 expected = (optics.reflectance * front + optics.transmittance * back) / kPi;
+        EXPECT_LT(glm::distance(result.radiance[2 * p].vec(), expected), 1e-5f);
+    }
+}
+
+TEST(BundlesBounceSweeps, AccelerationGoesToTheSamePlaceInFewerSweeps) {
+    for (float albedo : {0.9f, 0.99f}) {
+        const TracedTree tree(test::random_crown(300, 4, test::grey_leaf(albedo)));
+        const OutsideLight outside = tree.outside(test::sky_and_sun());
+        const BounceOperator bounces(tree.scene, tree.transport);
+        SweepLimits limits;
+        limits.tolerance = 1e-6;
+        const SweepResult accelerated = bounces.solve(outside, tree.scene.optics, limits, {});
+        limits.max_bounces = 500;
+        SweepResult plain = bounces.solve(outside, tree.scene.optics, limits, {});
+        const auto needed =
+            std::size_t(std::find_if(plain.residuals.begin(), plain.residuals.end(),
+                                     [&](double residual) { return residual <= accelerated.residuals.back(); }) -
+                        plain.residuals.begin());
+        EXPECT_LT(accelerated.residuals.size(), needed) << albedo;
+        bounces.remove_echoes(outside, tree.scene.optics, plain);
+        for (std::size_t s = 0; s < plain.radiance.size(); ++s)
+            ASSERT_LT(glm::distance(plain.radiance[s].vec(), accelerated.radiance[s].vec()),
+                      1e-4f * glm::length(plain.radiance[s].vec()))
+                << s;
+    }
+}
+
+TEST(BundlesBounceSweeps, ResidualsOfPlainSweepsFall) {
+    for (float albedo : {0.5f, 0.9f, 0.99f, 1.f}) {
+        const TracedTree tree(test::random_crown(200, 3, test::grey_leaf(albedo)));
+        SweepLimits limits;
+        limits.max_bounces = 30;
+        const SweepResult result = BounceOperator(tree.scene, tree.transport)
+                                       .solve(tree.outside(test::sky_and_sun()), tree.scene.optics, limits, {});
+        ASSERT_EQ(result.residuals.size(), 30u);
+        EXPECT_EQ(result.residuals[0], 1);
+        for (std::size_t i = 1; i < 30; ++i)
+            EXPECT_TRUE(result.residuals[i] < result.residuals[i - 1] || result.residuals[i] < 1e-6) << i;
+    }
+}
+
+TEST(BundlesBounceSweeps, ANearbyStartNeedsFewSweepsAndEndsTheSame) {
+    const TracedTree tree(test::random_crown(300, 3, test::grey_leaf(0.9f)));
+    const OutsideLight outside = tree.outside(test::sky_and_sun());
+    const BounceOperator bounces(tree.scene, tree.transport);
+    SweepLimits limits;
+    limits.tolerance = 1e-4;
+    const SweepResult cold = bounces.solve(outside, tree.scene.optics, limits, {});
+    const SweepResult warm = bounces.solve(outside, tree.scene.optics, limits, cold.radiance);
+    EXPECT_LT(warm.residuals.size(), cold.residuals.size());
+    for (std::size_t s = 0; s < cold.radiance.size(); ++s)
+        EXPECT_LT(glm::distance(cold.radiance[s].vec(), warm.radiance[s].vec()),
+                  1e-3f * glm::length(cold.radiance[s].vec()));
+}
+
+// With the ground: what it sends up is in the outside light where it lies open; tree and ground exchange the rest.
+TEST(BundlesBounceSweeps, AFurnaceWithAGroundIsOneEverywhere) {
+    PatchScene scene = leaves_and_a_trunk(200, {glm::vec3(0.7f, 0.2f, 0.f), glm::vec3(0.3f, 0.8f, 1)});
+    scene.optics[1].reflectance = glm::vec3(1);
+    for (bool ground : {false, true}) {
+        if (ground)
+            scene.ground = Ground{0.3f, glm::vec3(1)};
+        const TracedTree tree(scene);
+        const OutsideLight outside = tree.outside(test::constant_environment(glm::vec3(1)));
+        SweepLimits limits;
+        limits.tolerance = 1e-6;
+        const SweepResult result =
+            BounceOperator(tree.scene, tree.transport).solve(outside, tree.scene.optics, limits, {});
+        double mean = 0, largest = 0;
+        for (std::size_t s = 0; s < 400; ++s)
+            for (std::size_t c = 0; c < 3; ++c) {
+                const double error = std::abs(double(result.radiance[s].vec()[c]) - 1);
+                mean += error / 1200;
+                largest = std::max(largest, error);
+            }
+        EXPECT_LT(mean, ground ? 0.01 : 1e-4) << ground;
+        EXPECT_LT(largest, ground ? 0.05 : 1e-3) << ground;
+    }
+}
+
+TEST(BundlesBounceSweeps, RowsAreStochasticAndLinksGoBothWays) {
+    const TracedTree tree(leaves_and_a_trunk(200, test::realistic_leaf()));
+    const Links& links = tree.transport.links;
+    const OutsideLight outside = tree.outside(test::sky_and_sun());
+    const std::size_t sides = 2 * tree.scene.patches.size();
+    ASSERT_EQ(links.begin.size(), sides + 1);
+    std::map<std::pair<Side, Side>, int> count;
+    std::size_t lonely = 0;
+    for (Side s = 0; s < sides; ++s) {
+        EXPECT_GE(outside.open[s], 0);
+        EXPECT_LE(outside.open[s], 1);
+        ASSERT_LT(links.begin[s], links.begin[s + 1]) << "no row is empty";
+        EXPECT_LE(links.begin[s], links.middle[s]);
+        EXPECT_LE(links.middle[s], links.begin[s + 1]);
+        lonely += links.begin[s + 1] - links.begin[s] == 1;
+        for (std::uint32_t i = links.begin[s]; i < links.begin[s + 1]; ++i) {
+            ASSERT_LT(links.neighbours[i], sides);
+            ++count[{s, links.neighbours[i]}];
+        }
+    }
+    const Side inside = Side(sides) - 1; // of the wood; its own row is made up
+    std::size_t one_way = 0;
+    for (const auto& [pair, times] : count)
+        if (pair.first != inside && pair.second != inside) {
+            const auto back = count.find({pair.second, pair.first});
+            one_way += back == count.end() || back->second != times;
+        }
+    EXPECT_LE(one_way, 2 * lonely);
+}
+
+} // namespace
+} // namespace kokage
