@@ -1,0 +1,108 @@
+// How far the shading by `bundles` of fixed trees is from the truth. Stored figures, each explained: a change means
+// that the method shades differently: look why before storing another.
+#include "foliage/accuracy.h"
+#include "foliage/method.h"
+#include "foliage/path_traced.h"
+#include "tests/unit/foliage/small_trees.h"
+#include "trees/growth.h"
+#include "trees/patches.h"
+
+#include <gtest/gtest.h>
+
+namespace kokage {
+namespace {
+
+struct Judged {
+    Accuracy accuracy;
+    double estimated = 0;
+};
+
+class BundlesLeafShading : public testing::Test {
+  protected:
+    static void SetUpTestSuite() {
+        crown = new test::SmallTree(test::ball_on_a_skeleton(1000, 3, test::bright_leaf()));
+        reference = new PathTracedReference(
+            path_trace_reference(crown->scene, test::sky_and_sun(), 1024, 1, silent_progress()));
+    }
+    static void TearDownTestSuite() {
+        delete reference;
+        delete crown;
+    }
+    static Judged judge(const PatchScene& scene, const Tree& tree, const PathTracedReference& truth,
+                        ShadingOptions options) {
+        const Solution solution =
+            make_transport(scene, tree, options, silent_progress())->solve(test::sky_and_sun(), silent_progress());
+        std::vector<double> areas = solid_areas(scene);
+        areas.resize(scene.leaf_count); // a patch a leaf, then bark
+        return {accuracy(leaf_side_radiance(scene, solution.radiance), truth.sides, areas), *solution.estimated_error};
+    }
+    static Judged judge(int directions, std::uint64_t seed = 1) {
+        ShadingOptions options;
+        options.effort = directions;
+        options.seed = seed;
+        return judge(crown->scene, crown->tree, *reference, options);
+    }
+    static test::SmallTree* crown;
+    static PathTracedReference* reference;
+};
+test::SmallTree* BundlesLeafShading::crown = nullptr;
+PathTracedReference* BundlesLeafShading::reference = nullptr;
+
+TEST_F(BundlesLeafShading, ReferenceIsQuietEnoughToJudge) {
+    EXPECT_LT(reference->noise, 0.012);
+}
+
+// Lines are samples of the directions: four times as many halve the error, down to what one radiance a leaf side and
+// the reference's own noise cost.
+TEST_F(BundlesLeafShading, ErrorHalvesWithFourTimesTheDirections) {
+    const Judged few = judge(20), some = judge(80), many = judge(320);
+    EXPECT_NEAR(few.accuracy.mre, 0.046, 0.006);
+    EXPECT_NEAR(some.accuracy.mre, 0.0235, 0.004);
+    EXPECT_NEAR(many.accuracy.mre, 0.0162, 0.003); // the reference's noise of 1.0 % is in it
+    EXPECT_NEAR(few.estimated, 0.0456, 0.006);
+    EXPECT_NEAR(some.estimated, 0.0236, 0.004);
+    EXPECT_NEAR(many.estimated, 0.0130, 0.003);
+    EXPECT_NEAR(many.accuracy.bias, 0, 0.005) << "echoes are taken out";
+}
+
+// The same for other seeds: the figures above are no luck.
+TEST_F(BundlesLeafShading, SeedsAgree) {
+    for (std::uint64_t seed : {2u, 3u, 4u}) {
+        const Judged judged = judge(40, seed);
+        EXPECT_NEAR(judged.accuracy.mre, 0.032, 0.004);
+        EXPECT_NEAR(judged.estimated, 0.033, 0.004);
+        EXPECT_NEAR(judged.accuracy.bias, 0, 0.01);
+    }
+}
+
+TEST_F(BundlesLeafShading, KeepsTheErrorThatWasAskedFor) {
+    for (double error : {0.1, 0.05, 0.025}) {
+        ShadingOptions options;
+        options.error = error;
+        const Judged judged = judge(crown->scene, crown->tree, *reference, options);
+        EXPECT_LT(judged.accuracy.mre, 1.2 * error);
+        EXPECT_LT(judged.estimated, 1.2 * error);
+    }
+}
+
+// A grown oak of shoots, twigs and bark: leaves stand in each other's way at their stalks, and reach into wood.
+TEST_F(BundlesLeafShading, AGrownTreeWithBark) {
+    GrowthParameters parameters = oak_parameters();
+    parameters.leaves = 1200;
+    const Tree oak = grow(parameters);
+    PatchOptions patch_options;
+    patch_options.ground = Ground{};
+    const PatchScene scene = make_patches(oak, patch_options);
+    const PathTracedReference truth = path_trace_reference(scene, test::sky_and_sun(), 512, 1, silent_progress());
+    ShadingOptions options;
+    options.effort = 160;
+    const Judged judged = judge(scene, oak, truth, options);
+    // 2.5 % of it is the reference's noise, the rest (4 %) more than the halves of the lines can show: light is uneven
+    // over a leaf whose stalk sits in the shade of its shoot, and one radiance a side can't say so.
+    EXPECT_NEAR(judged.accuracy.mre, 0.047, 0.006);
+    EXPECT_NEAR(judged.estimated, 0.027, 0.005);
+    EXPECT_NEAR(judged.accuracy.bias, 0, 0.01);
+}
+
+} // namespace
+} // namespace kokage
