@@ -27,10 +27,6 @@ LightMapFieldOptions field_options(const ShadingOptions& options) {
     return field;
 }
 
-double sum(const glm::vec3& v) {
-    return double(v.r) + v.g + v.b;
-}
-
 SideIrradiance total(const SideIrradiance& a, const SideIrradiance& b) {
     SideIrradiance result = a;
     for (std::size_t p = 0; p < a.front.size(); ++p) {
@@ -147,11 +143,11 @@ void LightMapsTransport::balance_energy(Solution& solution, const FirstLight& fi
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
         const Optics& optics = optics_[scene_.patches[p].optics];
         const glm::vec3 absorbed = 1.f - optics.reflectance - optics.transmittance;
-        solution.energy_in += areas_[p] * sum(in.front[p] + in.back[p]);
-        solution.energy_absorbed += areas_[p] * sum(absorbed * (received.front[p] + received.back[p]));
+        solution.energy_in += areas_[p] * luminance(in.front[p] + in.back[p]);
+        solution.energy_absorbed += areas_[p] * luminance(absorbed * (received.front[p] + received.back[p]));
         solution.energy_escaped += areas_[p] * kPiDouble *
-                                   (sum(solution.radiance.front[p]) * (1 - filled_front_[p]) +
-                                    sum(solution.radiance.back[p]) * (1 - filled_back_[p]));
+                                   (luminance(solution.radiance.front[p]) * (1 - filled_front_[p]) +
+                                    luminance(solution.radiance.back[p]) * (1 - filled_back_[p]));
     }
 }
 

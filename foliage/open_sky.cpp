@@ -13,10 +13,6 @@ namespace {
 constexpr std::size_t kSampledPatches = 2048;
 constexpr int kRaysASide = 16;
 
-double sum(const glm::vec3& v) {
-    return double(v.r) + v.g + v.b;
-}
-
 /// Share of rays from one side of a patch that hit no other patch (the ground counts as outside).
 float measure_openness(const RayQueries& queries, const PatchPoints& points, std::uint32_t patch, float side,
                        std::uint64_t seed) {
@@ -54,10 +50,10 @@ OpenSky::OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progre
 double OpenSky::escaping_power(const SideRadiance& radiance) const {
     double sent_by_all = 0, sent_by_sampled = 0, escaped_of_sampled = 0;
     for (std::size_t p = 0; p < areas().size(); ++p)
-        sent_by_all += areas()[p] * kPiDouble * (sum(radiance.front[p]) + sum(radiance.back[p]));
+        sent_by_all += areas()[p] * kPiDouble * (luminance(radiance.front[p]) + luminance(radiance.back[p]));
     for (const Sampled& sampled : sampled_) {
-        const double front = areas()[sampled.patch] * kPiDouble * sum(radiance.front[sampled.patch]);
-        const double back = areas()[sampled.patch] * kPiDouble * sum(radiance.back[sampled.patch]);
+        const double front = areas()[sampled.patch] * kPiDouble * luminance(radiance.front[sampled.patch]);
+        const double back = areas()[sampled.patch] * kPiDouble * luminance(radiance.back[sampled.patch]);
         sent_by_sampled += front + back;
         escaped_of_sampled += front * sampled.open_front + back * sampled.open_back;
     }

@@ -13,7 +13,7 @@ namespace kokage {
 class OpenSky {
   public:
     OpenSky(const RayQueries& queries, std::uint64_t seed, Progress& progress);
-    /// Power that leaves the tree, to the sky and to the ground, summed over channels.
+    /// Power that leaves the tree, to the sky and to the ground, in luminance.
     double escaping_power(const SideRadiance& radiance) const;
     const std::vector<double>& areas() const { return points_.areas(); } ///< solid area of each patch in m^2
     std::uint64_t rays_traced() const { return rays_; }

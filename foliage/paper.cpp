@@ -120,8 +120,8 @@ Solution PaperTransport::solve(const Environment& environment, Progress& progres
         const double scale = sides * kPiDouble * energy_.areas()[p];
         const glm::dvec3 lost = (1.0 - glm::dvec3(albedo(p))) * scale * glm::dvec3(glm::max(means[p], glm::vec3(0.f)));
         const glm::dvec3 in = scale * glm::dvec3(glm::max(first_means[p], glm::vec3(0.f)));
-        solution.energy_in += in.r + in.g + in.b;
-        solution.energy_absorbed += lost.r + lost.g + lost.b;
+        solution.energy_in += luminance(glm::vec3(in));
+        solution.energy_absorbed += luminance(glm::vec3(lost));
     }
     solution.energy_escaped = energy_.escaping_power(solution.radiance);
     report(solution, convergence, means);

@@ -26,7 +26,7 @@ struct Solution {
     std::optional<double>
         estimated_error; ///< of the MRE, from half-sample differences; empty where samples can't show it
     double energy_in = 0, energy_absorbed = 0,
-           energy_escaped = 0;       ///< W: into the tree from outside; balance = (absorbed + escaped)/in
+           energy_escaped = 0; ///< luminance x sr x m^2: into the tree from outside; balance = (absorbed + escaped)/in
     std::size_t transport_bytes = 0; ///< kept between relights
     WorkReport report;
 };

@@ -52,7 +52,6 @@ int complain(std::string message, int status) {
 
 int run_command(const Command& command, bool quiet, int threads) {
     set_thread_count(threads);
-    watch_stop_signals();
     TerminalProgress progress(!quiet && stderr_is_terminal());
     try {
         command.run({.quiet = quiet, .threads = threads, .progress = &progress});
@@ -80,6 +79,7 @@ int run_command(const Command& command, bool quiet, int threads) {
 } // namespace
 
 int run_program(int argc, const char* const* argv) {
+    watch_stop_signals(); // first of all: nobody knows when Ctrl-C comes
     CLI::App program("Fast, accurate shading of trees: the light on every leaf, from the crown's edge to its core.",
                      "kokage");
     program.set_version_flag("--version", "kokage " KOKAGE_VERSION);

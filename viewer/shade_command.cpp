@@ -56,6 +56,10 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(s.patches, s.tree, options.shading, progress); });
     s.solution = clock.run("solve", [&] { return transport->solve(s.environment, progress); });
+    if (!options.surroundings.sun.empty() && s.environment.distant_lights.empty() && s.environment.point_lights.empty())
+        s.solution.report.warnings.push_back(
+            "--sun: the sun has set; the sky is that of sunset, only dimmer, and automatic "
+            "exposure brightens the picture again (give --exposure for night)");
     progress.throw_if_stopped();
     if (!options.image.empty())
         s.picture = clock.run("picture", [&] { return draw(s, options, progress); });

@@ -92,6 +92,9 @@ void complete_method(ShadeOptions& o) {
     s.gather = o.gather == "rule" ? GatherRule::rule : GatherRule::cosine;
     if (o.error && s.method == Method::paper)
         throw InputError("--error: the paper's method can't aim at an error; leave it out, or choose another --method");
+    if (o.error && s.method == Method::light_maps)
+        throw InputError(
+            "--error: light-maps can't see its own error; give --effort (rays a leaf side) and --maps instead");
     if (o.error && s.effort > 0)
         throw InputError("--error and --effort contradict one another; leave one of them out");
     if (o.error && !(*o.error > 0 && *o.error <= 10))
@@ -131,6 +134,9 @@ void complete_outputs(ShadeOptions& o) {
     o.picture.seed = o.shading.seed;
     if (o.picture.exposure_stops && !(std::abs(*o.picture.exposure_stops) <= 100))
         throw InputError("--exposure: it must be from -100 to 100 stops");
+    const std::string ending = lower_ending(o.image);
+    if (o.picture.exposure_stops && (ending == ".exr" || ending == ".hdr"))
+        throw InputError("--exposure: " + ending + " pictures hold the light as it is; leave it out, or write a .png");
     if (o.surroundings.ground == false)
         o.picture.ground = PictureGround::none;
     if (!o.output.empty())
@@ -153,10 +159,15 @@ void find_in_data(ShadeOptions& o) {
     std::error_code ignored;
     if (!fs::is_directory(o.data, ignored))
         throw InputError("--data (or KOKAGE_DATA): there is no folder '" + o.data.string() + "'");
-    for (std::string* name : {&o.tree.name, &o.surroundings.environment})
-        if (!fs::exists(*name, ignored) && fs::path(*name).is_relative() &&
-            fs::is_regular_file(o.data / *name, ignored))
-            *name = (o.data / *name).string();
+    for (std::string* name : {&o.tree.name, &o.surroundings.environment}) {
+        if (fs::exists(*name, ignored) || fs::path(*name).is_absolute())
+            continue;
+        for (const fs::path& folder : {o.data, o.data / "env", o.data / "trees"})
+            if (fs::is_regular_file(folder / *name, ignored)) {
+                *name = (folder / *name).string();
+                break;
+            }
+    }
 }
 
 } // namespace
@@ -165,7 +176,8 @@ void add_shade_options(CLI::App& app, ShadeOptions& o) {
     app.add_option("TREE", o.tree.name, "A species to grow, or a tree's file (.glb, .gltf)")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--data", o.data, "A folder in which TREE and --environment are looked for too")
+    app.add_option("--data", o.data,
+                   "A folder in which (and in whose env and trees) TREE and --environment are looked for too")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
     add_growing_options(app, o.tree);
