@@ -34,6 +34,8 @@ class DrawnLights {
         DistantLight light;
         std::vector<Beam> beams; ///< of a light of irradiance `light.irradiance`
         BeamVisibility visibility;
+        std::vector<glm::vec2> mean_open; ///< per beam: of leaves and of bark, 0 ... 254
+        float samples = 0;                ///< pixels a leaf, over all beams
     };
     const Distant& draw(const DistantLight& light, const LightEffort& effort, std::vector<Distant>& kept,
                         std::uint64_t seed);
