@@ -30,11 +30,11 @@ class Efforts {
 std::vector<PlannedScene> quick_plan() {
     using enum BenchLight;
     using enum BenchMaterial;
-    const std::vector<PlannedEffort> main =
-        Efforts().bundles({16, 24, 32, 48, 64}).paths({64, 128}).light_maps({15}).paper({15});
     return {
-        {{sky_sun, 30000, realistic}, main},
-        {{sky_sun, 30000, bright}, main},
+        // efforts on both sides of 6 % of error
+        {{sky_sun, 30000, realistic},
+         Efforts().bundles({16, 24, 32, 40, 48}).paths({64, 80}).light_maps({15}).paper({15})},
+        {{sky_sun, 30000, bright}, Efforts().bundles({12, 16, 20, 32}).paths({32, 64}).light_maps({15}).paper({15})},
         {{lamp_lit, 30000, realistic}, Efforts().bundles({16, 32, 48}).paths({64})},
         {{furnace, 30000, BenchMaterial::white}, Efforts().bundles({32})},
         {{sky_sun, 5000, realistic}, Efforts().bundles({32}).paths({64}).light_maps({15}).paper({15})},
@@ -49,9 +49,9 @@ std::vector<PlannedScene> full_plan() {
         for (BenchMaterial material : {realistic, bright}) {
             plan.push_back({{light, 30000, material},
                             Efforts()
-                                .bundles({8, 16, 24, 32, 48, 64, 128})
+                                .bundles({8, 12, 16, 24, 32, 40, 48, 64, 128})
                                 .asked({0.1, 0.05, 0.03})
-                                .paths({16, 64, 128, 256})
+                                .paths({16, 32, 64, 80, 128, 256})
                                 .light_maps({15, 100})
                                 .paper({15, 100, 1000})});
             plan.push_back({{light, 5000, material},
