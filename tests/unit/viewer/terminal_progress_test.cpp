@@ -25,6 +25,16 @@ TEST(ProgressLine, UnknownTotalShowsElapsedTime) {
     EXPECT_EQ(progress_line("loading", 0, 0, 2.2), "loading  3 s");
 }
 
+// False in a bare chroot, where /dev/pts is not mounted.
+bool terminals_can_be_had() {
+    int master = -1, slave = -1;
+    if (openpty(&master, &slave, nullptr, nullptr, nullptr) != 0)
+        return false;
+    close(master);
+    close(slave);
+    return true;
+}
+
 // What a child process with a terminal as its stderr wrote there.
 std::string drawn_on_a_terminal(void (*work)()) {
     int terminal = -1;
@@ -45,6 +55,8 @@ std::string drawn_on_a_terminal(void (*work)()) {
 }
 
 TEST(TerminalProgress, DrawsLongStagesAndClearsTheLine) {
+    if (!terminals_can_be_had())
+        GTEST_SKIP() << "skipped: this system hands out no terminals (/dev/pts is not mounted)";
     const std::string text = drawn_on_a_terminal([] {
         TerminalProgress progress(stderr_is_terminal());
         progress.begin("short work", 10);
@@ -62,6 +74,8 @@ TEST(TerminalProgress, DrawsLongStagesAndClearsTheLine) {
 }
 
 TEST(TerminalProgress, IsSilentWhenAskedTo) {
+    if (!terminals_can_be_had())
+        GTEST_SKIP() << "skipped: this system hands out no terminals (/dev/pts is not mounted)";
     const std::string text = drawn_on_a_terminal([] {
         TerminalProgress progress(false);
         progress.begin("long work", 10);
