@@ -145,6 +145,19 @@ Image error_legend(int width, int height) {
     return legend;
 }
 
+std::string error_legend_text(double scale, double unit, const std::string& suffix) {
+    if (scale == 0)
+        return "all black: no difference";
+    std::ostringstream text;
+    text.precision(3);
+    text << "black 0";
+    const char* names[] = {"violet", "red-purple", "orange", "pale yellow"};
+    for (int i = 0; i < 4; ++i)
+        text << ", " << names[i] << ' ' << scale * unit * (i + 1) / 4 << suffix;
+    text << " and above";
+    return text.str();
+}
+
 std::string describe(const ImageComparison& comparison) {
     std::ostringstream line;
     line.precision(4);

@@ -39,6 +39,11 @@ ImageComparison compare_images(const Image& a, const Image& b);
 /// The colour scale of the map for t in 0 … 1, as a strip for a legend: width x height, 0 at the left.
 Image error_legend(int width, int height);
 
+/// What the map's colours mean, for people: the errors that its named colours stand for, from 0 to `scale`, each times
+/// `unit` and with `suffix` behind it: "black 0, violet 0.25, red-purple 0.5, orange 0.75, pale yellow 1 and above". At
+/// scale 0 that nothing differs.
+std::string error_legend_text(double scale, double unit, const std::string& suffix);
+
 /// The figures in one line a person can read.
 std::string describe(const ImageComparison& comparison);
 

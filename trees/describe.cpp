@@ -1,5 +1,6 @@
 #include "trees/describe.h"
 
+#include "common/services/count_text.h"
 #include "trees/find_branching.h"
 
 #include <algorithm>
@@ -26,13 +27,6 @@ std::string length_text(double metres) {
 
 std::string area_text(double square_metres) {
     return square_metres < 0.1 ? formatted("%.3g cm2", 1e4 * square_metres) : formatted("%.4g m2", square_metres);
-}
-
-std::string count_text(std::size_t count) {
-    std::string text = std::to_string(count);
-    for (int place = int(text.size()) - 3; place > 0; place -= 3)
-        text.insert(std::size_t(place), ",");
-    return text;
 }
 
 void measure(const Tree& tree, TreeDescription& d) {
@@ -95,6 +89,7 @@ TreeDescription describe(const Tree& tree) {
     d.leaves = tree.leaves.size();
     d.bark_patches = tree.bark_patch_count;
     d.branching_known = tree.branching_known;
+    d.was_shaded = tree.was_shaded;
     d.notes = tree.notes;
     measure(tree, d);
     count_orders(tree, d);
@@ -123,30 +118,34 @@ std::string text_of(const TreeDescription& d) {
     if (d.leaves > 0)
         text += ", " + area_text(d.leaf_area_m2) + " together (one side), median " + area_text(d.median_leaf_m2) +
                 ", smallest " + area_text(d.smallest_leaf_m2) + ", largest " + area_text(d.largest_leaf_m2);
-    text += "\nbark         " + count_text(d.bark_patches) + " patches, " + area_text(d.bark_area_m2) + "\n";
+    text += "\nbark         " + counted(d.bark_patches, "patch", "patches") + ", " + area_text(d.bark_area_m2) + "\n";
     std::size_t branches = 0;
     for (const auto& [number, order] : d.orders)
         branches += order.branches;
     text += std::string("branching    ") + (d.branching_known ? "known" : "inferred from bark and leaves") + ", " +
-            count_text(branches) + " branches\n";
+            counted(branches, "branch", "branches") + "\n";
     for (const auto& [number, order] : d.orders) {
         char label[24];
         std::snprintf(label, sizeof label, "  order %-4d ", number);
-        text += label + count_text(order.branches) + " branches, " + count_text(order.leaves) + " leaves on " +
-                count_text(order.bearing) + " of them\n";
+        text += label + counted(order.branches, "branch", "branches") + ", " + counted(order.leaves, "leaf", "leaves");
+        if (order.leaves > 0)
+            text += " on " + count_text(order.bearing) + " of them";
+        text += "\n";
     }
     if (d.leaves_without_branch > 0)
-        text += "  " + count_text(d.leaves_without_branch) + " leaves belong to no branch\n";
+        text += "  of no branch: " + counted(d.leaves_without_branch, "leaf", "leaves") + "\n";
     for (const TreeDescription::Surface& s : d.surfaces) {
         const bool leaf = s.kind == TreePartKind::foliage;
-        text += std::string(leaf ? "foliage" : "bark   ") + "      '" + s.material + "': " + count_text(s.triangles) +
-                " triangles" + (s.textured ? ", textured" : "") + (s.masked ? ", alpha mask" : "") + "; reflectance " +
-                color_text(s.optics.reflectance);
+        text += std::string(leaf ? "foliage" : "bark   ") + "      '" + s.material +
+                "': " + counted(s.triangles, "triangle", "triangles") + (s.textured ? ", textured" : "") +
+                (s.masked ? ", alpha mask" : "") + "; reflectance " + color_text(s.optics.reflectance);
         if (leaf)
             text +=
                 "; transmittance " + color_text(s.optics.transmittance) + (s.transmittance_guessed ? " (guessed)" : "");
         text += "\n";
     }
+    if (d.was_shaded)
+        text += "light        shaded already: the file holds the light on every leaf\n";
     for (const std::string& note : d.notes)
         text += "note         " + note + "\n";
     return text;
@@ -168,6 +167,7 @@ nlohmann::json json_of(const TreeDescription& d) {
                              {"without_branch", d.leaves_without_branch}}},
                            {"bark", {{"patches", d.bark_patches}, {"area_m2", d.bark_area_m2}}},
                            {"branching", {{"known", d.branching_known}, {"orders", nlohmann::json::array()}}},
+                           {"shaded", d.was_shaded},
                            {"surfaces", nlohmann::json::array()},
                            {"notes", d.notes}};
     for (const auto& [number, order] : d.orders)

@@ -30,6 +30,7 @@ struct TreeDescription {
     double leaf_area_m2 = 0, bark_area_m2 = 0; ///< one side, holes of alpha masks taken out
     double smallest_leaf_m2 = 0, median_leaf_m2 = 0, largest_leaf_m2 = 0;
     bool branching_known = true;
+    bool was_shaded = false; ///< as Tree::was_shaded
     std::map<int, Order> orders;
     std::size_t leaves_without_branch = 0;
     std::vector<Surface> surfaces; ///< one for each part

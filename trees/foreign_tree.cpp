@@ -2,6 +2,7 @@
 
 #include "common/geometry/point_tree.h"
 #include "common/geometry/triangle_topology.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "trees/bark_skeleton.h"
 #include "trees/find_branching.h"
@@ -229,10 +230,10 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
     }
     if (scene.materials.size() > file_materials)
         tree.notes.push_back("vertex colours were averaged over each of " +
-                             std::to_string(scene.materials.size() - file_materials) + " meshes");
+                             counted(scene.materials.size() - file_materials, "mesh", "meshes"));
     if (back_faces > 0)
-        tree.notes.push_back(std::to_string(back_faces) +
-                             " triangles that repeat others from behind were dropped: leaves are two-sided");
+        tree.notes.push_back("dropped " + counted(back_faces, "triangle", "triangles") +
+                             " that only show others from behind: leaves are two-sided");
     std::map<int, std::uint32_t> material_of;
     const auto part_index = [&](int material, TreePartKind kind) {
         const auto [place, is_new] = part_of.try_emplace({material, kind == TreePartKind::bark ? 1 : 0}, parts.size());
@@ -272,10 +273,9 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
     if (leaf_count == 0)
         tree.notes.push_back("no foliage was found: say which material or mesh it is");
     else
-        tree.notes.push_back(
-            std::to_string(leaf_count) +
-            " leaves: connected foliage, cut where it turns by more than 30 degrees or is larger than " +
-            metres_text(leaf_radius) + " in radius");
+        tree.notes.push_back(counted(leaf_count, "leaf", "leaves") +
+                             ": connected foliage, cut where it turns by more than 30 degrees or is larger than " +
+                             metres_text(leaf_radius) + " in radius");
 
     // Bark and branching.
     for (PartBuilder& builder : parts)

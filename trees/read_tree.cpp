@@ -7,6 +7,7 @@
 #include "trees/tree_extras.h"
 
 #include <cmath>
+#include <tiny_gltf.h>
 
 namespace kokage {
 
@@ -25,6 +26,15 @@ void scale_tree(Tree& tree, double scale) {
         leaf.centre = scaled(leaf.centre);
 }
 
+/// Whether a mesh carries the attributes that write_tree() gives shaded trees (another program may have kept them).
+bool holds_light(const GltfDocument& document) {
+    for (const tinygltf::Mesh& mesh : document.model().meshes)
+        for (const tinygltf::Primitive& primitive : mesh.primitives)
+            if (primitive.attributes.contains("_RADIANCE_FRONT") || primitive.attributes.contains("_RADIANCE"))
+                return true;
+    return false;
+}
+
 } // namespace
 
 Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Progress& progress) {
@@ -34,15 +44,18 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
         throw InputError("the leaf size is " + std::to_string(options.leaf_size) +
                          " m; it must be 0 (found by itself) or above");
     const GltfDocument document = GltfDocument::read(path, progress);
+    const bool shaded = holds_light(document);
     std::string why;
     if (options.foliage_materials.empty() && options.leaf_size == 0) {
         if (std::optional<OwnTree> own = read_own_tree(document, why, progress)) {
             if (options.scale != 1)
                 scale_tree(own->tree, options.scale);
+            own->tree.was_shaded = shaded;
             return std::move(own->tree);
         }
     }
     Tree tree = read_foreign_tree(document, options, progress);
+    tree.was_shaded = shaded;
     if (!why.empty())
         tree.notes.insert(tree.notes.begin(), why + ": leaves and branching were found anew");
     return tree;

@@ -71,6 +71,7 @@ struct Tree {
     std::vector<Leaf> leaves;
     std::uint32_t bark_patch_count = 0;
     bool branching_known = true;    ///< false: inferred from bark and leaf clusters
+    bool was_shaded = false;        ///< the file that it was read from holds light of an earlier shading
     std::vector<std::string> notes; ///< what was guessed or substituted, for reports
 };
 

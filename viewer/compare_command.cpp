@@ -1,5 +1,6 @@
 // `kokage compare`: how far two pictures, or two shadings of a tree, are apart.
 #include "common/scene/image_file.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
@@ -33,6 +34,32 @@ Json figures_json(const DifferenceFigures& f) {
             {"max", f.max},   {"bias", f.bias}, {"mean_relative", f.relative}};
 }
 
+/// What a report says of the error map.
+Json map_json(const std::filesystem::path& path, const char* shows, double scale, const std::string& legend) {
+    return {{"file", path.string()}, {"shows", shows}, {"brightest_at", scale}, {"colours", legend}};
+}
+
+void print_map(const CommandContext& context, const std::filesystem::path& path, const char* shows,
+               const std::string& legend) {
+    if (!context.quiet)
+        std::printf("error map: %s (%s: %s)\n", path.c_str(), shows, legend.c_str());
+}
+
+std::string kind_text(const ImageHeader& header) {
+    return header.is_linear ? "linear radiance" : "display colours of " + std::to_string(header.bits) + " bits";
+}
+
+/// Empty if the numbers of both files mean the same.
+std::string unlike_warning(const CompareOptions& options) {
+    const ImageHeader a = image_header(options.picture), b = image_header(options.reference);
+    if (a.is_linear == b.is_linear)
+        return "";
+    return "'" + options.picture.string() + "' holds " + kind_text(a) + ", '" + options.reference.string() + "' " +
+           kind_text(b) +
+           " (exposed, tone-mapped, cut off at 1): their numbers mean different things, so these figures "
+           "say little; compare two of one kind";
+}
+
 Image clamped(Image image) {
     for (float& value : image.pixels)
         value = std::clamp(value, 0.f, 1.f);
@@ -43,6 +70,9 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     // As stored, without alpha: 8-bit pictures are compared as they are shown, float pictures as radiance.
     const ImageLoading as_stored{.meaning = PixelMeaning::data, .channels = 3};
     const Image picture = load_image(options.picture, as_stored), reference = load_image(options.reference, as_stored);
+    const std::string unlike = unlike_warning(options);
+    if (!unlike.empty())
+        std::fprintf(stderr, "kokage: warning: %s\n", unlike.c_str());
     const ImageComparison whole = compare_images(picture, reference);
     const ImageComparison shown = compare_images(clamped(picture), clamped(reference));
     std::printf("%-20s %.4g %%\n", "mean relative error", 100 * whole.all.relative);
@@ -50,19 +80,23 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     print_figures("error of 256", shown.all, 255);
     std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
     if (whole.skipped_values > 0)
-        std::printf("%s values are not finite and are in no figure\n", count_text(whole.skipped_values).c_str());
+        std::printf("not finite, in no figure: %s\n", counted(whole.skipped_values, "value", "values").c_str());
+    const char* shows = "a pixel's largest difference of a channel";
+    const std::string legend = error_legend_text(double(whole.map_scale), 1, "");
     if (!options.error_map.empty()) {
         save_image(options.error_map, whole.map, {.png_encoding = PngEncoding::as_is});
-        if (!context.quiet)
-            std::printf("error map: %s (brightest at %.4g)\n", options.error_map.c_str(), double(whole.map_scale));
+        print_map(context, options.error_map, shows, legend);
     }
     if (!options.report.empty()) {
-        const Json report = {{"picture", options.picture.string()},
-                             {"reference", options.reference.string()},
-                             {"error", figures_json(whole.all)},
-                             {"error_of_1_clamped", figures_json(shown.all)},
-                             {"largest_error_at", {whole.max_x, whole.max_y}},
-                             {"values_not_finite", whole.skipped_values}};
+        Json report = {{"picture", options.picture.string()},
+                       {"reference", options.reference.string()},
+                       {"error", figures_json(whole.all)},
+                       {"error_of_1_clamped", figures_json(shown.all)},
+                       {"largest_error_at", {whole.max_x, whole.max_y}},
+                       {"values_not_finite", whole.skipped_values},
+                       {"warnings", unlike.empty() ? Json::array() : Json::array({unlike})}};
+        if (!options.error_map.empty())
+            report["error_map"] = map_json(options.error_map, shows, double(whole.map_scale), legend);
         write_json(options.report, report);
     }
 }
@@ -77,21 +111,24 @@ void compare_trees(const CompareOptions& options, const CommandContext& context)
     std::printf("bias                  %+.4g %%\n", 100 * c.accuracy.bias);
     std::printf("largest error         %.4g %%, of leaf %zu\n", 100 * c.largest, c.largest_leaf);
     const WritingFiles writing;
+    const char* shows = "a leaf side's mean relative error of a channel";
+    const std::string legend = error_legend_text(c.map_scale, 100, " %");
     if (!options.error_map.empty()) {
         save_image(options.error_map, c.map, {.png_encoding = PngEncoding::as_is});
-        if (!context.quiet)
-            std::printf("error map: %s (brightest at %.4g %%)\n", options.error_map.c_str(), 100 * c.map_scale);
+        print_map(context, options.error_map, shows, legend + "; bark is grey");
     }
     if (!options.report.empty()) {
-        const Json report = {{"shaded", options.picture.string()},
-                             {"reference", options.reference.string()},
-                             {"leaves", c.leaves},
-                             {"mre", c.accuracy.mre},
-                             {"p95", c.accuracy.p95},
-                             {"rmse_over_mean", c.accuracy.rmse_over_mean},
-                             {"bias", c.accuracy.bias},
-                             {"largest", c.largest},
-                             {"largest_leaf", c.largest_leaf}};
+        Json report = {{"shaded", options.picture.string()},
+                       {"reference", options.reference.string()},
+                       {"leaves", c.leaves},
+                       {"mre", c.accuracy.mre},
+                       {"p95", c.accuracy.p95},
+                       {"rmse_over_mean", c.accuracy.rmse_over_mean},
+                       {"bias", c.accuracy.bias},
+                       {"largest", c.largest},
+                       {"largest_leaf", c.largest_leaf}};
+        if (!options.error_map.empty())
+            report["error_map"] = map_json(options.error_map, shows, c.map_scale, legend);
         write_json(options.report, report);
     }
 }

@@ -1,6 +1,7 @@
 #include "viewer/compare_trees.h"
 #include "common/environment/analytic_sky.h"
 #include "common/scene/image_file.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "reflection/compare_images.h"
 #include "reflection/picture.h"
@@ -32,8 +33,8 @@ ShadedFile read(const std::filesystem::path& path, Progress& progress) {
 /// Throws InputError unless both have the same leaves in the same places.
 void check_same_tree(const ShadedFile& a, const ShadedFile& b, const std::string& names) {
     if (a.tree.leaves.size() != b.tree.leaves.size())
-        throw InputError(names + " are not the same tree: " + std::to_string(a.tree.leaves.size()) +
-                         " leaves against " + std::to_string(b.tree.leaves.size()));
+        throw InputError(names + " are not the same tree: " + counted(a.tree.leaves.size(), "leaf", "leaves") +
+                         " against " + count_text(b.tree.leaves.size()));
     const double tolerance = 1e-4 * double(bounds_of(b.scene).diagonal());
     for (std::size_t i = 0; i < a.tree.leaves.size(); ++i)
         if (glm::length(glm::dvec3(a.tree.leaves[i].centre) + a.tree.origin - glm::dvec3(b.tree.leaves[i].centre) -

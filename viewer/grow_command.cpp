@@ -1,4 +1,5 @@
 // `kokage grow`: a tree from a species, as glTF.
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/stopwatch.h"
 #include "trees/growth.h"
@@ -69,9 +70,10 @@ void grow_and_write(GrowOptions options, const CommandContext& context) {
     write_tree(options.output, tree, nullptr, {}, *context.progress);
     context.progress->clear();
     if (!context.quiet)
-        std::printf("%s: %s leaves, %s branches; grown in %s, written in %s\n", options.output.c_str(),
-                    count_text(tree.leaves.size()).c_str(), count_text(tree.skeleton.branches.size()).c_str(),
-                    duration_text(grown).c_str(), duration_text(watch.wall()).c_str());
+        std::printf("%s: %s, %s; grown in %s, written in %s\n", options.output.c_str(),
+                    counted(tree.leaves.size(), "leaf", "leaves").c_str(),
+                    counted(tree.skeleton.branches.size(), "branch", "branches").c_str(), duration_text(grown).c_str(),
+                    duration_text(watch.wall()).c_str());
 }
 
 } // namespace
@@ -84,6 +86,7 @@ Command grow_command(CLI::App& program) {
         ->type_name("NAME")
         ->capture_default_str();
     app->add_option("--seed", options->seed, "Which individual: the same seed gives the same tree (otherwise 1)")
+        ->check(whole_number())
         ->type_name("N")
         ->group("Tree");
     add_growing_options(*app, options->source);

@@ -10,6 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <new>
+#include <optional>
 #include <sstream>
 
 namespace kokage {
@@ -48,6 +49,23 @@ int complain(std::string message, int status) {
     std::replace(message.begin(), message.end(), '\n', ' ');
     std::fprintf(stderr, "kokage: %s\n", message.c_str());
     return status;
+}
+
+/// The first word of a command line that names no command.
+std::optional<std::string> unknown_command(const CLI::App& program) {
+    if (!program.get_subcommands().empty())
+        return {};
+    for (const std::string& word : program.remaining())
+        if (word.rfind('-', 0) != 0)
+            return word;
+    return {};
+}
+
+std::string no_such_command(const std::string& name, const std::vector<Command>& commands) {
+    std::string known;
+    for (const Command& command : commands)
+        known += (known.empty() ? "" : ", ") + command.app->get_name();
+    return "there is no command '" + name + "'; commands: " + known + " ('kokage --help' tells more)";
 }
 
 int run_command(const Command& command, bool quiet, int threads) {
@@ -100,8 +118,12 @@ int run_program(int argc, const char* const* argv) {
     try {
         program.parse(argc, argv);
     } catch (const CLI::Success& help) {
+        if (const auto name = unknown_command(program))
+            return complain(no_such_command(*name, commands), kInputError);
         return program.exit(help);
     } catch (const CLI::ParseError& error) {
+        if (const auto name = unknown_command(program))
+            return complain(no_such_command(*name, commands), kInputError);
         return complain(std::string(error.what()) + " ('kokage --help' tells more)", kInputError);
     }
     for (const Command& command : commands)

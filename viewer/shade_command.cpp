@@ -1,5 +1,6 @@
 // `kokage shade`: tree + surroundings -> the light on every leaf, as glTF, picture and report.
 #include "common/scene/image_file.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
@@ -28,6 +29,7 @@ struct Shading {
     PatchOrigins origins;
     Solution solution;
     std::optional<Image> picture; ///< linear radiance
+    std::vector<std::string> warnings;
 };
 
 Image draw(const Shading& shading, const ShadeOptions& options, Progress& progress) {
@@ -45,9 +47,15 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     progress.throw_if_stopped();
     s.environment = clock.run(
         "environment", [&] { return obtain_environment(options.surroundings, s.tree.origin, s.environment_report); });
+    s.warnings = s.environment_report.warnings;
+    if (const std::optional<std::string> night = night_warning(options.surroundings))
+        s.warnings.push_back(*night);
     s.patches = clock.run("patches", [&] {
         PatchOptions patch_options;
         patch_options.ground = obtain_ground(options.surroundings, s.environment, s.tree);
+        if (patch_options.ground)
+            for (const std::string& hidden : drop_hidden_lights(s.environment, *patch_options.ground))
+                s.warnings.push_back(hidden);
         PatchScene scene = make_patches(s.tree, patch_options, &s.origins);
         override_optics(options, scene);
         return scene;
@@ -56,10 +64,9 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(s.patches, s.tree, options.shading, progress); });
     s.solution = clock.run("solve", [&] { return transport->solve(s.environment, progress); });
-    if (!options.surroundings.sun.empty() && s.environment.distant_lights.empty() && s.environment.point_lights.empty())
-        s.solution.report.warnings.push_back(
-            "--sun: the sun has set; the sky is that of sunset, only dimmer, and automatic "
-            "exposure brightens the picture again (give --exposure for night)");
+    if (s.solution.energy_in == 0)
+        s.warnings.push_back("no light reaches the tree, and all of it is black: give --environment or --light that "
+                             "shines on it");
     progress.throw_if_stopped();
     if (!options.image.empty())
         s.picture = clock.run("picture", [&] { return draw(s, options, progress); });
@@ -93,14 +100,15 @@ std::string asked_text(const ShadingOptions& options) {
 }
 
 void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
-    std::printf("%s: %s leaves, %s patches; %s\n", s.tree.name.c_str(), count_text(s.tree.leaves.size()).c_str(),
-                count_text(s.patches.patches.size()).c_str(), s.environment.description.c_str());
+    std::printf("%s: %s, %s%s; %s\n", s.tree.name.c_str(), counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
+                counted(s.patches.patches.size(), "patch", "patches").c_str(),
+                s.tree.was_shaded ? " (shaded before: that light is replaced)" : "", s.environment.description.c_str());
     std::printf("%s: ", std::string(method_name(options.shading.method)).c_str());
     if (s.solution.estimated_error)
         std::printf("estimated error %.2g %%%s, ", 100 * *s.solution.estimated_error,
                     asked_text(options.shading).c_str());
     if (!s.solution.residuals.empty())
-        std::printf("%zu bounces, ", s.solution.residuals.size());
+        std::printf("%s, ", counted(s.solution.residuals.size(), "bounce", "bounces").c_str());
     std::printf("%s kept for relighting\n", bytes_text(double(s.solution.transport_bytes)).c_str());
     for (const WorkReport::Stage& stage : clock.stages())
         std::printf("  %-12s %10s  (CPU %s)\n", stage.name.c_str(), duration_text(stage.wall_seconds).c_str(),
@@ -138,6 +146,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     record.options = options.shading;
     record.solution = &shading.solution;
     record.work.stages = clock.stages();
+    record.work.warnings = shading.warnings;
     record.cpu_seconds = watch.cpu();
     record.wall_seconds = watch.wall();
     const std::pair<const char*, const std::filesystem::path*> outputs[] = {
@@ -151,8 +160,9 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     context.progress->clear();
     if (context.quiet)
         return;
-    for (const std::string& warning : shading.solution.report.warnings)
-        std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
+    for (const std::vector<std::string>* warnings : {&shading.warnings, &shading.solution.report.warnings})
+        for (const std::string& warning : *warnings)
+            std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
     print_summary(options, shading, clock);
 }
 

@@ -20,30 +20,30 @@ void add_method_options(CLI::App& app, ShadeOptions& o) {
                    "Mean relative error of the leaves to aim at, from which the effort follows (otherwise 0.05)")
         ->type_name("E")
         ->group("Method");
-    app.add_option("--effort", o.shading.effort,
-                   "The effort itself, in place of --error: bundles: directions; path-traced: paths a leaf side; 0 = "
-                   "from --error")
+    app.add_option("--effort", o.effort,
+                   "The effort itself, in place of --error: bundles: directions; path-traced: paths a leaf side; "
+                   "light-maps: rays a leaf side; 0 = the method's own")
         ->type_name("N")
-        ->capture_default_str()
         ->group("Method");
-    app.add_option("--maps", o.shading.maps, "Light-environment maps; 0 = the method's own number (paper: 15)")
+    app.add_option("--maps", o.maps,
+                   "Light-environment maps: paper (otherwise 15) and light-maps (otherwise 100) shade by them; bundles "
+                   "only writes them to OUT.glb for programs that read them (otherwise 15)")
         ->type_name("N")
-        ->capture_default_str()
         ->group("Method");
-    app.add_option("--bands", o.shading.bands, "Bands of spherical harmonics of a map, 1 to 40")
+    app.add_option("--bands", o.bands, "Bands of spherical harmonics of such a map, 1 to 40 (otherwise 7)")
         ->type_name("N")
-        ->capture_default_str()
         ->group("Method");
     app.add_option("--gather", o.gather,
-                   "How a leaf reads maps: cosine (two-sided cosine) or rule (the paper's equations 2 and 3)")
+                   "light-maps: how a leaf reads maps: cosine (two-sided cosine; the default) or rule (the paper's "
+                   "equations 2 and 3)")
         ->type_name("NAME")
-        ->capture_default_str()
         ->group("Method");
     app.add_option("--bounces", o.shading.max_bounces, "Most bounces of light; 0 = until they no longer matter")
         ->type_name("N")
         ->capture_default_str()
         ->group("Method");
     app.add_option("--seed", o.shading.seed, "Seed of the method's random numbers (another tree: --set seed=N)")
+        ->check(whole_number())
         ->type_name("N")
         ->capture_default_str()
         ->group("Method");
@@ -83,12 +83,36 @@ void add_output_options(CLI::App& app, ShadeOptions& o) {
         ->group("Output");
 }
 
+/// What would change nothing is a misunderstanding: better said than swallowed.
+void refuse_idle_options(const ShadeOptions& o) {
+    const Method method = o.shading.method;
+    const std::string name(method_name(method));
+    if (o.effort && method == Method::paper)
+        throw InputError("--effort: the paper's method has none; its --maps and --bounces can be chosen");
+    if (o.gather && method != Method::light_maps)
+        throw InputError("--gather: it shapes light-maps alone, and would change nothing with " + name +
+                         "; leave it out, or give --method light-maps");
+    for (const auto& [option, given] : {std::pair("--maps", o.maps.has_value()), {"--bands", o.bands.has_value()}}) {
+        if (given && method == Method::path_traced)
+            throw InputError(std::string(option) + ": path-traced uses no light maps, so it would change nothing; " +
+                             "leave it out, or choose another --method");
+        if (given && method == Method::bundles && o.output.empty())
+            throw InputError(std::string(option) +
+                             ": bundles does not shade by light maps, it only writes them to the shaded tree, which "
+                             "is not written; add -o OUT.glb, or give --method light-maps");
+    }
+}
+
 void complete_method(ShadeOptions& o) {
     ShadingOptions& s = o.shading;
     s.for_hosts = !o.output.empty(); // the file takes light maps along
     s.method = method_from_name(o.method);
-    if (o.gather != "rule" && o.gather != "cosine")
-        throw InputError("--gather: '" + o.gather + "' is not known; give rule or cosine");
+    refuse_idle_options(o);
+    s.effort = o.effort.value_or(s.effort);
+    s.maps = o.maps.value_or(s.maps);
+    s.bands = o.bands.value_or(s.bands);
+    if (o.gather && *o.gather != "rule" && *o.gather != "cosine")
+        throw InputError("--gather: '" + *o.gather + "' is not known; give rule or cosine");
     s.gather = o.gather == "rule" ? GatherRule::rule : GatherRule::cosine;
     if (o.error && s.method == Method::paper)
         throw InputError("--error: the paper's method can't aim at an error; leave it out, or choose another --method");
@@ -120,14 +144,17 @@ void complete_materials(const ShadeOptions& o) {
 }
 
 /// With none named, all three are written, called after the tree; otherwise those that are named.
+void name_outputs(ShadeOptions& o) {
+    if (!o.output.empty() || !o.image.empty() || !o.report.empty())
+        return;
+    // Beside a file of one's own, "oak.glb" would be overwritten.
+    const std::string stem = o.tree.stem() + (o.tree.is_species() ? "" : "-shaded");
+    o.output = stem + ".glb";
+    o.image = stem + ".png";
+    o.report = stem + ".json";
+}
+
 void complete_outputs(ShadeOptions& o) {
-    if (o.output.empty() && o.image.empty() && o.report.empty()) {
-        // Beside a file of one's own, "oak.glb" would be overwritten.
-        const std::string stem = o.tree.stem() + (o.tree.is_species() ? "" : "-shaded");
-        o.output = stem + ".glb";
-        o.image = stem + ".png";
-        o.report = stem + ".json";
-    }
     const Size size = size_from(o.image_size, "--image-size");
     o.picture.width = size.width;
     o.picture.height = size.height;
@@ -190,6 +217,7 @@ void add_shade_options(CLI::App& app, ShadeOptions& o) {
 
 void complete_shade_options(ShadeOptions& o) {
     find_in_data(o);
+    name_outputs(o);
     complete_method(o);
     complete_materials(o);
     check_tree_source(o.tree);

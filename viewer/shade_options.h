@@ -15,7 +15,8 @@ struct ShadeOptions {
 
     std::string method = "bundles";
     std::optional<double> error;
-    std::string gather = "cosine";
+    std::optional<int> effort, maps, bands; ///< each refused where the method or the outputs have no use for it
+    std::optional<std::string> gather;
     ShadingOptions shading; ///< the rest of the method's options; complete after complete_shade_options()
 
     std::string leaf_reflectance, leaf_transmittance, bark_albedo; ///< colours; empty = the material's own

@@ -2,10 +2,12 @@
 #include "common/environment/analytic_sky.h"
 #include "common/environment/light_description.h"
 #include "common/environment/load_environment.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "viewer/values.h"
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <limits>
 
@@ -52,6 +54,15 @@ Environment gradient(const std::string& values) {
     return gradient_environment(color(0), color(3), color(6));
 }
 
+/// ", with the lights sun:1,2,3, point:4,5,6,7 and 3 more"; empty without any.
+std::string added_lights_text(const std::vector<std::string>& lights) {
+    constexpr std::size_t kNamed = 4;
+    std::string text = lights.empty() ? "" : lights.size() == 1 ? ", with the light " : ", with the lights ";
+    for (std::size_t i = 0; i < std::min(lights.size(), kNamed); ++i)
+        text += (i == 0 ? "" : " + ") + lights[i];
+    return lights.size() > kNamed ? text + " and " + count_text(lights.size() - kNamed) + " more" : text;
+}
+
 /// What needs no file, lights left out. Empty for a file.
 std::optional<Environment> made_environment(const Surroundings& surroundings) {
     std::string values;
@@ -85,19 +96,21 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
     app.add_option("--environment", s.environment,
                    "What lights the tree: sky (daylight with sun), constant[:R,G,B], gradient[:nine numbers: zenith, "
                    "horizon, nadir], "
-                   "or a lat-long image (.hdr, .exr, .png)")
+                   "or a lat-long image (.hdr, .exr, .png), twice as wide as high")
         ->type_name("ENV")
         ->capture_default_str()
         ->group("Light");
     app.add_option("--sun", s.sun,
-                   "Sky: where the sun stands, in degrees (otherwise 135,45); azimuth 0 is north (-Z), 90 east (+X)")
+                   "Sky: where the sun stands, in degrees (otherwise 135,45); azimuth 0 is north (-Z), 90 east (+X). "
+                   "Below the horizon the sky is that of sunset, dimmed: dusk, not a night with stars or moon")
         ->type_name("AZ,EL")
         ->group("Light");
     app.add_option("--turbidity", s.turbidity, "Sky: haze, from 2 (very clear) to 10 (otherwise 3)")
         ->type_name("T")
         ->group("Light");
     app.add_option("--light", s.lights,
-                   "A light more: sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  directional:AZ,EL,R,G,B  "
+                   "A light more (what the ground hides is left out): sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  "
+                   "directional:AZ,EL,R,G,B  "
                    "point:X,Y,Z,R,G,B; may be repeated")
         ->type_name("LIGHT")
         ->allow_extra_args(false)
@@ -146,9 +159,37 @@ Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, 
     Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
     for (const std::string& light : s.lights)
         add_light(environment, light);
+    environment.description += added_lights_text(s.lights);
     for (PointLight& light : environment.point_lights)
         light.position = glm::vec3(glm::dvec3(light.position) - origin);
     return environment;
+}
+
+std::vector<std::string> drop_hidden_lights(Environment& environment, const Ground& ground) {
+    std::vector<std::string> dropped;
+    std::erase_if(environment.distant_lights, [&](const DistantLight& light) {
+        const bool hidden = std::asin(std::clamp(light.direction.y, -1.f, 1.f)) + light.half_angle <= 0;
+        if (hidden && light.texels.empty())
+            dropped.push_back("the light '" + light.name + "' is below the horizon: the ground hides it, and it is " +
+                              "left out (--no-ground lets light through from below)");
+        return hidden;
+    });
+    std::erase_if(environment.point_lights, [&](const PointLight& light) {
+        const bool hidden = light.position.y < ground.height_m;
+        if (hidden)
+            dropped.push_back("the light '" + light.name + "' is under the ground, which hides it: it is left out " +
+                              "(--no-ground lets light through from below)");
+        return hidden;
+    });
+    return dropped;
+}
+
+std::optional<std::string> night_warning(const Surroundings& s) {
+    if (s.environment != "sky" || s.sun.empty() || sun_irradiance(daylight(s)) != glm::vec3(0.f))
+        return {};
+    return "--sun: the sun is below the horizon and gives no light; there is no night sky (no stars, no moon): what "
+           "lights the tree is the sky of sunset, only dimmer, and automatic exposure brightens the picture again "
+           "(give --exposure for one that is dark)";
 }
 
 std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& environment, const Tree& tree) {

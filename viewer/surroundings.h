@@ -26,12 +26,20 @@ void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
 /// Throws InputError, before any work, for values that can't be.
 void check_surroundings(const Surroundings& surroundings);
 
-/// Builds or loads it. Point lights are placed relative to `origin` (Tree::origin), as all positions of a tree are.
+/// Builds or loads it; its description names the lights that were added. Point lights are placed relative to `origin`
+/// (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
 
 /// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else its
 /// lowest point.
 float foot_height(const Tree& tree);
+
+/// Takes out the lights that the ground hides from everything above it: distant ones wholly below the horizon, points
+/// under the ground. Gives back a sentence for each light that the user added; those found in an image go silently.
+std::vector<std::string> drop_hidden_lights(Environment& environment, const Ground& ground);
+
+/// What a user has to know about the night: empty unless the sky's sun is below the horizon.
+std::optional<std::string> night_warning(const Surroundings& surroundings);
 
 /// The ground that takes part in the transport, at the foot of the tree; empty if there is none.
 std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, const Tree& tree);

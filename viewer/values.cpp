@@ -65,6 +65,17 @@ Size size_from(std::string_view text, std::string_view what) {
     return size;
 }
 
+CLI::Validator whole_number() {
+    return CLI::Validator(
+        [](const std::string& text) {
+            std::uint64_t value = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+            const bool good = error == std::errc() && end == text.data() + text.size();
+            return good ? "" : "'" + text + "' is not a whole number from 0 to 18446744073709551615";
+        },
+        "");
+}
+
 std::string duration_text(double seconds) {
     char text[48];
     if (seconds < 0.9995)
@@ -83,13 +94,6 @@ std::string bytes_text(double bytes) {
         bytes /= 1000;
     char text[32];
     std::snprintf(text, sizeof text, bytes < 9.95 && unit > 0 ? "%.1f %s" : "%.0f %s", bytes, units[unit]);
-    return text;
-}
-
-std::string count_text(std::uint64_t count) {
-    std::string text = std::to_string(count);
-    for (int place = int(text.size()) - 3; place > 0; place -= 3)
-        text.insert(std::size_t(place), ",");
     return text;
 }
 

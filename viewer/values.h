@@ -2,6 +2,7 @@
 // Values as they stand on the command line.
 #include "common/types.h"
 
+#include <CLI/CLI.hpp>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,11 +22,12 @@ struct Size {
 };
 Size size_from(std::string_view text, std::string_view what);
 
+/// A check for options that take a whole number from 0: without it CLI11 reads -1 as 2^64 - 1.
+CLI::Validator whole_number();
+
 /// "3.42 s", "12 ms", "2 min 05 s".
 std::string duration_text(double seconds);
 /// "1.2 MB".
 std::string bytes_text(double bytes);
-/// "30,123".
-std::string count_text(std::uint64_t count);
 
 } // namespace kokage

@@ -60,6 +60,7 @@ struct EnvironmentReport {
     std::size_t regions_found = 0;              ///< bright regions before the limit of 64
     double energy_before = 0, energy_after = 0; ///< integral of luminance over the sphere
     std::string note;                           ///< one line a person can read; empty if there is nothing to say
+    std::vector<std::string> warnings; ///< those parts of the note that tell that the image is not as it should be
 };
 
 } // namespace kokage

@@ -1,5 +1,6 @@
 #include "common/environment/load_environment.h"
 #include "common/scene/image_file.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 
 #include <algorithm>
@@ -70,6 +71,20 @@ void fill_inwards(Image& image, int channel, std::vector<std::pair<int, int>> ho
     }
 }
 
+/// A lat-long image spans 360 x 180 degrees. Empty if the shape fits. Throws for what can't be one.
+std::string shape_warning(const Image& image, const std::string& name) {
+    if (image.width == 2 * image.height || image.width == 1) // one column: the same all around
+        return "";
+    const std::string size = std::to_string(image.width) + " x " + std::to_string(image.height);
+    if (image.height > image.width)
+        throw InputError("environment '" + name + "': its " + size +
+                         " pixels are higher than wide; a lat-long image shows 360 x 180 degrees and is twice as wide "
+                         "as high, so convert it to that first");
+    return "'" + name + "' is " + size + ", not twice as wide as high as a lat-long image is; it is stretched over " +
+           "the whole sphere all the same" +
+           (image.width == image.height ? " (a mirror ball or an angular map has to be converted first)" : "");
+}
+
 } // namespace
 
 void repair_pixels(Image& image, const std::string& name, bool strict, EnvironmentReport& report) {
@@ -106,8 +121,8 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
         const float value = image.at(bad.front().x, bad.front().y)[bad.front().channel];
         throw InputError("environment '" + name + "': " + place(bad.front().x, bad.front().y) + " is " +
                          std::to_string(value) + " in channel " + std::to_string(bad.front().channel) + ", " +
-                         std::to_string(bad.size()) +
-                         " such values in all; mend the image, or leave out --strict to have them repaired");
+                         counted(bad.size(), "such value", "such values") +
+                         " in all; mend the image, or leave out --strict to have them repaired");
     }
     std::array<std::vector<std::pair<int, int>>, 3> holes;
     for (const BadValue& value : bad) {
@@ -129,15 +144,20 @@ Environment environment_from_image(Image image, const std::string& name, Environ
     report = {};
     if (image.empty() || image.channels < 3)
         throw InputError("environment '" + name + "': the image is empty or has fewer than 3 channels");
+    const std::string shape = shape_warning(image, name);
     repair_pixels(image, name, loading.strict, report);
     auto add_note = [&](const std::string& note) { report.note += (report.note.empty() ? "" : "; ") + note; };
+    auto add_warning = [&](const std::string& warning) {
+        add_note(warning);
+        report.warnings.push_back(warning);
+    };
     if (report.first_bad_x >= 0)
-        add_note("repaired pixels: " + std::to_string(report.nan_pixels) + " NaN, " +
-                 std::to_string(report.infinite_pixels) + " infinite, " + std::to_string(report.negative_pixels) +
-                 " negative, the first is " + place(report.first_bad_x, report.first_bad_y));
-    if (image.width != 2 * image.height && image.width > 1)
-        add_note("the image is " + std::to_string(image.width) + " x " + std::to_string(image.height) +
-                 ", not twice as wide as high; it is stretched over the sphere all the same");
+        add_warning("'" + name + "' has bad pixels, which were repaired: " + std::to_string(report.nan_pixels) +
+                    " NaN, " + std::to_string(report.infinite_pixels) + " infinite, " +
+                    std::to_string(report.negative_pixels) + " negative; the first is " +
+                    place(report.first_bad_x, report.first_bad_y));
+    if (!shape.empty())
+        add_warning(shape);
     if (loading.max_width > 0 && image.width > loading.max_width) {
         add_note("reduced from " + std::to_string(image.width) + " to " + std::to_string(loading.max_width) +
                  " columns");

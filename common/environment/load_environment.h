@@ -14,8 +14,9 @@ struct EnvironmentLoading {
     LightSplitting splitting{};
 };
 
-/// Reads a lat-long image. Integer files (PNG) are decoded from sRGB. Throws InputError with the path, and with the
-/// place under `strict`.
+/// Reads a lat-long image. Integer files (PNG) are decoded from sRGB. One that is not twice as wide as high is
+/// stretched over the sphere, with a warning in the report; one that is higher than wide (a cross or column of cube
+/// faces, a portrait) is refused. Throws InputError with the path, and with the place under `strict`.
 Environment load_environment(const std::filesystem::path& path, EnvironmentReport& report,
                              const EnvironmentLoading& loading = {});
 

@@ -84,6 +84,16 @@ bool names_extension(const nlohmann::json& object, const char* extension) {
     return extensions != object.end() && extensions->is_object() && extensions->contains(extension);
 }
 
+/// "cut off" or "broken at line 2, column 7"; `byte` counts from 1.
+std::string place_of_fault(std::string_view text, std::size_t byte) {
+    if (byte > text.size())
+        return text.empty() ? "empty" : "cut off";
+    const std::string_view before = text.substr(0, byte > 0 ? byte - 1 : 0);
+    const auto line = 1 + std::count(before.begin(), before.end(), '\n');
+    const std::size_t line_begin = before.find_last_of('\n') + 1; // npos + 1 is 0
+    return "broken at line " + std::to_string(line) + ", column " + std::to_string(before.size() - line_begin + 1);
+}
+
 [[noreturn]] void refuse_extension(const std::string& name, const std::string& path) {
     std::string advice = "export it without that extension";
     if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression" || name == "KHR_meshopt_compression")
@@ -115,11 +125,10 @@ nlohmann::json parse_gltf_json(std::span<const unsigned char> bytes, const std::
         if (!json.is_object() || !json.contains("asset"))
             fail(path, "is not a glTF file: its JSON has no \"asset\"");
         return json;
-    } catch (const nlohmann::json::exception& error) {
-        std::string what = error.what();
-        std::replace_if(
-            what.begin(), what.end(), [](char c) { return c < ' ' || c > '~'; }, '?');
-        fail(path, "is not a glTF file: " + what.substr(0, 160));
+    } catch (const nlohmann::json::parse_error& error) {
+        fail(path, "is not a glTF file: its JSON is " + place_of_fault(text, error.byte));
+    } catch (const nlohmann::json::exception&) {
+        fail(path, "is not a glTF file: its JSON holds a number out of range");
     }
 }
 

@@ -20,12 +20,18 @@ using Input = std::unique_ptr<OIIO::ImageInput>;
     throw InputError("cannot read image '" + name + "': " + why);
 }
 
-std::string one_line(std::string text) {
+/// What OpenImageIO says, as one line; `otherwise` if it says nothing, or something about itself ("Is it a file format
+/// that OpenImageIO doesn't know about?").
+std::string one_line(std::string text, const char* otherwise) {
     std::replace(text.begin(), text.end(), '\n', ' ');
     while (!text.empty() && text.back() == ' ')
         text.pop_back();
-    return text.empty() ? "it is damaged or of an unknown format" : text;
+    const bool useless = text.empty() || text.back() == '?' || text.find("OpenImageIO") != std::string::npos;
+    return useless ? otherwise : text;
 }
+constexpr const char* kUnreadable =
+    "it is damaged or of an unknown format; .hdr, .exr, .png, .jpg, .tif, .webp, .bmp and .tga can be read";
+constexpr const char* kUnwritable = "the system did not take it (is the disk full?)";
 
 OIIO::ImageSpec straight_alpha_request() {
     OIIO::ImageSpec config;
@@ -153,7 +159,7 @@ Image read(Input input, const std::string& name, const ImageLoading& loading) {
         fail_to_read(name, "its colour channels lie among too many others; write them to a file of their own");
     Image image(spec.width, spec.height, last - first);
     if (!input->read_image(0, 0, first, last, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-        fail_to_read(name, one_line(input->geterror()));
+        fail_to_read(name, one_line(input->geterror(), kUnreadable));
     const bool direct =
         choice.count == last - first && std::is_sorted(choice.source.begin(), choice.source.begin() + choice.count);
     if (!direct) {
@@ -189,7 +195,7 @@ Input open(const std::filesystem::path& path) {
     const OIIO::ImageSpec config = straight_alpha_request();
     Input input = OIIO::ImageInput::open(path.string(), &config);
     if (!input)
-        fail_to_read(path.string(), one_line(OIIO::geterror()));
+        fail_to_read(path.string(), one_line(OIIO::geterror(), kUnreadable));
     return input;
 }
 
@@ -236,13 +242,14 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name, cons
     config.attribute("oiio:ioproxy", OIIO::TypeDesc::PTR, &proxy); // the argument alone is lost where a config is given
     Input input = OIIO::ImageInput::open("memory." + format, &config, proxy);
     if (!input)
-        fail_to_read(name, one_line(OIIO::geterror()));
+        fail_to_read(name, one_line(OIIO::geterror(), kUnreadable));
     return read(std::move(input), name, loading);
 }
 
-ImageSize image_size(const std::filesystem::path& path) {
+ImageHeader image_header(const std::filesystem::path& path) {
     const OIIO::ImageSpec spec = open(path)->spec();
-    return {spec.full_width, spec.full_height, spec.nchannels};
+    return {spec.full_width, spec.full_height, spec.nchannels, int(spec.format.size()) * 8,
+            spec.format.is_floating_point()};
 }
 
 namespace {
@@ -335,7 +342,7 @@ void save_image(const std::filesystem::path& path, const Image& image, const Ima
     OutputFile file(path);
     const auto output = OIIO::ImageOutput::create(extension.substr(1));
     if (!output)
-        fail_to_write(name, one_line(OIIO::geterror()));
+        fail_to_write(name, one_line(OIIO::geterror(), kUnwritable));
     bool good;
     if (png) {
         good = output->open(file.temporary_path().string(), png_spec(image, saving)) &&
@@ -348,7 +355,7 @@ void save_image(const std::filesystem::path& path, const Image& image, const Ima
                output->write_image(OIIO::TypeDesc::FLOAT, stored.pixels.data());
     }
     if (!good || !output->close())
-        fail_to_write(name, one_line(output->geterror()));
+        fail_to_write(name, one_line(output->geterror(), kUnwritable));
     file.commit();
 }
 
@@ -361,7 +368,7 @@ std::vector<std::byte> encode_png(const Image& image, const ImageSaving& saving)
     const auto output = OIIO::ImageOutput::create("memory.png", &memory);
     if (!output || !output->open("memory.png", png_spec(image, saving)) || !write_png_pixels(*output, image, saving) ||
         !output->close())
-        fail_to_write(name, one_line(output ? output->geterror() : OIIO::geterror()));
+        fail_to_write(name, one_line(output ? output->geterror() : OIIO::geterror(), kUnwritable));
     std::vector<std::byte> result(bytes.size());
     std::memcpy(result.data(), bytes.data(), bytes.size());
     return result;

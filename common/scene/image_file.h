@@ -37,11 +37,13 @@ Image load_image(const std::filesystem::path& path, const ImageLoading& loading 
 /// for messages.
 Image load_image(std::span<const std::byte> bytes, const std::string& name, const ImageLoading& loading = {});
 
-struct ImageSize {
+struct ImageHeader {
     int width = 0, height = 0, channels = 0;
+    int bits = 0;           ///< of a channel, as they are read (.hdr: 32)
+    bool is_linear = false; ///< float files hold linear radiance, integer files sRGB
 };
 /// Reads a file's header alone.
-ImageSize image_size(const std::filesystem::path& path);
+ImageHeader image_header(const std::filesystem::path& path);
 
 /// How linear colour is stored in integer files; EXR and HDR are always written as they are.
 enum class PngEncoding {

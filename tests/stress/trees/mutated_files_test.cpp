@@ -29,6 +29,7 @@ void read_mutant(const std::string& bytes, const std::filesystem::path& path, Ou
         const std::string what = error.what();
         EXPECT_EQ(what.find('\n'), std::string::npos) << what;
         EXPECT_FALSE(what.empty());
+        EXPECT_EQ(what.find("exception"), std::string::npos) << what;
     }
 }
 

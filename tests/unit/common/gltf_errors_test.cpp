@@ -147,6 +147,20 @@ TEST(GltfErrors, FilesThatAreNoGltf) {
         std::ofstream(folder / "no.glb", std::ios::binary) << text;
         EXPECT_THROW(GltfDocument::read(folder / "no.glb"), InputError) << text.size();
     }
+    const std::vector<std::pair<std::string, std::string>> broken = {
+        {"{", "its JSON is cut off"},
+        {"", "its JSON is empty"},
+        {"{\n  \"asset\": }", "its JSON is broken at line 2, column 12"},
+        {"{\"a\": 1e999}", "its JSON holds a number out of range"}};
+    for (const auto& [text, says] : broken) {
+        std::ofstream(folder / "broken.gltf") << text;
+        try {
+            GltfDocument::read(folder / "broken.gltf");
+            FAIL() << text;
+        } catch (const InputError& error) {
+            EXPECT_EQ(std::string(error.what()), (folder / "broken.gltf").string() + ": is not a glTF file: " + says);
+        }
+    }
     EXPECT_THROW(GltfDocument::read(folder / "missing.glb"), InputError);
     EXPECT_THROW(GltfDocument::read(folder.path()), InputError);
 }

@@ -95,9 +95,11 @@ TEST_F(ImageFileTest, EveryFormatComesBackFromPathAndFromMemory) {
             EXPECT_LE(largest_difference(from_path, image), tolerance) << extension << " " << channels;
             const Image from_memory = load_image(bytes_of(path), "memory", {.channels = wanted});
             EXPECT_EQ(largest_difference(from_memory, from_path), 0) << extension << " " << channels;
-            const ImageSize size = image_size(path);
+            const ImageHeader size = image_header(path);
             EXPECT_EQ(size.width, 13);
             EXPECT_EQ(size.height, 7);
+            EXPECT_EQ(size.is_linear, std::string(extension) != ".png");
+            EXPECT_EQ(size.bits, std::string(extension) == ".png" ? 8 : 32);
         }
 }
 
@@ -180,7 +182,17 @@ TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
     EXPECT_THROW(load_image(folder / "missing.png"), InputError);
     EXPECT_THROW(load_image(folder), InputError);
     std::ofstream(folder / "text.png") << "no image at all";
-    EXPECT_THROW(load_image(folder / "text.png"), InputError);
+    std::ofstream(folder / "text.txt") << "no image at all";
+    for (const char* name : {"text.png", "text.txt"})
+        try {
+            load_image(folder / name);
+            FAIL() << name;
+        } catch (const InputError& error) {
+            const std::string what = error.what();
+            EXPECT_NE(what.find(name), std::string::npos) << what;
+            EXPECT_EQ(what.find('?'), std::string::npos) << what;
+            EXPECT_EQ(what.find("OpenImageIO"), std::string::npos) << what;
+        }
     EXPECT_THROW(load_image(std::span<const std::byte>(), "empty"), InputError);
     const std::string ktx = "\xabKTX 20\xbb\r\n\x1a\n and more";
     EXPECT_THROW(load_image(std::as_bytes(std::span(ktx)), "texture.ktx2"), InputError);

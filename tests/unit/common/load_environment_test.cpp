@@ -134,8 +134,14 @@ TEST_F(LoadEnvironment, SaysWhatIsOdd) {
     EnvironmentReport report;
     environment_from_image(smooth_image(30, 30), "square", report);
     EXPECT_NE(report.note.find("30 x 30"), std::string::npos);
+    ASSERT_EQ(report.warnings.size(), 1u);
+    EXPECT_NE(report.warnings[0].find("30 x 30"), std::string::npos);
+    EXPECT_THROW(environment_from_image(smooth_image(30, 40), "cross", report), InputError);
+    environment_from_image(smooth_image(1, 40), "column", report); // the same all around
+    EXPECT_TRUE(report.warnings.empty());
     environment_from_image(smooth_image(64, 32), "wide", report, {.max_width = 16});
     EXPECT_NE(report.note.find("reduced from 64"), std::string::npos);
+    EXPECT_TRUE(report.warnings.empty()) << "nothing is wrong with a large image";
 }
 
 TEST_F(LoadEnvironment, SplitsEveryRealEnvironmentSensibly) {

@@ -24,10 +24,14 @@ TEST(CommandLine, VersionIsOneLine) {
 
 TEST(CommandLine, UnknownCommandIsNamed) {
     TemporaryFolder folder;
-    const ProgramRun run = run_kokage({"prune"}, folder.path());
-    EXPECT_EQ(run.status, 2);
-    EXPECT_TRUE(is_one_complaint(run.errors));
-    EXPECT_NE(run.errors.find("prune"), std::string::npos);
+    for (const std::vector<std::string>& words :
+         {std::vector<std::string>{"prune"}, {"prune", "--help"}, {"prune", "oak.glb", "--threads", "2"}}) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2);
+        EXPECT_TRUE(is_one_complaint(run.errors));
+        EXPECT_NE(run.errors.find("no command 'prune'; commands: grow, describe,"), std::string::npos) << run.errors;
+        EXPECT_EQ(run.output, "");
+    }
 }
 
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {

@@ -40,6 +40,27 @@ TEST(Compare, FiguresAndMapAreWritten) {
     const Image map = load_image(folder / "map.png");
     EXPECT_EQ(map.width, 8);
     EXPECT_EQ(map.height, 4);
+    EXPECT_NE(run.output.find("error map: map.png"), std::string::npos);
+    EXPECT_NE(run.output.find("black 0, violet 0.0312, red-purple 0.0625, orange 0.0938, pale yellow 0.125 and above"),
+              std::string::npos)
+        << run.output;
+    EXPECT_NEAR(double(report["error_map"]["brightest_at"]), 0.125, 1e-6);
+    EXPECT_NE(run.output.find(std::string(report["error_map"]["colours"])), std::string::npos);
+    EXPECT_TRUE(report["warnings"].empty());
+    EXPECT_EQ(run.errors, "");
+}
+
+TEST(Compare, LinearAgainstDisplayColoursIsWarnedOf) {
+    TemporaryFolder folder;
+    save_image(folder / "a.exr", grey_ramp(0));
+    save_image(folder / "b.png", grey_ramp(0));
+    const ProgramRun run = run_kokage({"compare", "a.exr", "b.png", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.errors.find("warning: 'a.exr' holds linear radiance, 'b.png' display colours of 8 bits"),
+              std::string::npos)
+        << run.errors;
+    EXPECT_TRUE(is_one_complaint(run.errors));
+    EXPECT_EQ(nlohmann::json::parse(read_text(folder / "r.json"))["warnings"].size(), 1u);
 }
 
 TEST(Compare, WhatCannotBeComparedIsSaidInOneLine) {

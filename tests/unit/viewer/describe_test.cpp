@@ -13,7 +13,7 @@ TEST(Describe, TellsWhatASpeciesGrowsInto) {
     EXPECT_EQ(run.output.rfind("tree         oak (grown: oak, seed 3)\n", 0), 0u) << run.output;
     EXPECT_NE(run.output.find("leaves       500, "), std::string::npos);
     EXPECT_NE(run.output.find("branching    known"), std::string::npos);
-    EXPECT_NE(run.output.find("  order 0    1 branches"), std::string::npos);
+    EXPECT_NE(run.output.find("  order 0    1 branch,"), std::string::npos);
     EXPECT_EQ(run.errors, "");
     EXPECT_TRUE(folder.files().empty());
 }

@@ -152,6 +152,99 @@ TEST(Shade, BadPixelsAreCountedOrRefused) {
     EXPECT_TRUE(is_one_complaint(run.errors));
 }
 
+Json warnings_of(const TemporaryFolder& folder, const Words& more) {
+    return report_of(folder, more)["warnings"];
+}
+
+TEST(Shade, OddlyShapedEnvironmentsAreWarnedOfOrRefused) {
+    TemporaryFolder folder;
+    Image sky(16, 8, 3);
+    std::fill(sky.pixels.begin(), sky.pixels.end(), 1.f);
+    save_image(folder / "panorama.exr", sky);
+    sky.width = 8, sky.height = 16;
+    save_image(folder / "portrait.exr", sky);
+    sky = Image(12, 12, 3);
+    std::fill(sky.pixels.begin(), sky.pixels.end(), 1.f);
+    save_image(folder / "square.exr", sky);
+    EXPECT_TRUE(warnings_of(folder, {"--environment", "panorama.exr"}).empty());
+    const Json warnings = warnings_of(folder, {"--environment", "square.exr"});
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(std::string(warnings[0]).find("12 x 12, not twice as wide as high"), std::string::npos) << warnings[0];
+    const ProgramRun run = run_kokage(small_shade({"--environment", "portrait.exr"}), folder.path());
+    EXPECT_EQ(run.status, 2);
+    EXPECT_TRUE(is_one_complaint(run.errors));
+    EXPECT_NE(run.errors.find("8 x 16 pixels are higher than wide"), std::string::npos) << run.errors;
+}
+
+TEST(Shade, LightsThatTheGroundHidesAreLeftOutAndSaid) {
+    TemporaryFolder folder;
+    const Words below = {"--light", "point:1,-2,1,5", "--light", "directional:10,-20,4"};
+    Words words = below;
+    words.insert(words.end(), {"--method", "bundles"});
+    const Json plain = report_of(folder, {}), hidden = report_of(folder, words);
+    ASSERT_EQ(hidden["warnings"].size(), 2u) << hidden["warnings"];
+    EXPECT_NE(std::string(hidden["warnings"][0]).find("'directional:10,-20,4' is below the horizon"),
+              std::string::npos);
+    EXPECT_NE(std::string(hidden["warnings"][1]).find("'point:1,-2,1,5' is under the ground"), std::string::npos);
+    EXPECT_EQ(hidden["energy"], plain["energy"]) << "they light nothing";
+    EXPECT_EQ(hidden["inputs"]["environment"]["lights"], plain["inputs"]["environment"]["lights"]);
+    words.push_back("--no-ground");
+    const Json from_below = report_of(folder, words);
+    EXPECT_TRUE(from_below["warnings"].empty()) << from_below["warnings"];
+    EXPECT_EQ(from_below["inputs"]["environment"]["lights"].size(), 3u);
+}
+
+TEST(Shade, DarknessIsWarnedOf) {
+    TemporaryFolder folder;
+    for (const char* method : {"paper", "light-maps", "bundles", "path-traced"}) {
+        const Json warnings = warnings_of(folder, {"--environment", "constant:0", "--method", method});
+        ASSERT_EQ(warnings.size(), 1u) << method << warnings;
+        EXPECT_NE(std::string(warnings[0]).find("no light reaches the tree"), std::string::npos);
+    }
+    const ProgramRun run =
+        run_kokage(small_shade({"--environment", "constant:0", "--report", "r.json"}), folder.path());
+    EXPECT_NE(run.errors.find("kokage: warning: no light reaches the tree"), std::string::npos) << run.errors;
+    EXPECT_TRUE(warnings_of(folder, {"--environment", "constant:0", "--light", "point:0,5,0,1"}).empty());
+}
+
+TEST(Shade, ASunThatHasSetIsWarnedOf) {
+    TemporaryFolder folder;
+    for (const Words& more : {Words{"--sun", "90,-10"}, Words{"--sun", "90,-10", "--light", "point:0,5,0,1"}}) {
+        const Json warnings = warnings_of(folder, more);
+        ASSERT_EQ(warnings.size(), 1u) << warnings;
+        EXPECT_NE(std::string(warnings[0]).find("no night sky"), std::string::npos);
+    }
+    EXPECT_TRUE(warnings_of(folder, {"--sun", "90,1"}).empty());
+    EXPECT_NE(run_kokage({"shade", "--help"}, folder.path()).output.find("Below the horizon"), std::string::npos);
+}
+
+TEST(Shade, SummaryNamesAddedLightsAndCountsInGoodEnglish) {
+    TemporaryFolder folder;
+    const ProgramRun run = run_kokage({"shade", "--leaves", "1", "--light", "point:0,5,0,1", "--light",
+                                       "sun:0,50,3,3,3", "--bounces", "1", "--report", "r.json"},
+                                      folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(run.output.rfind("oak: 1 leaf, ", 0), 0u) << run.output;
+    EXPECT_NE(run.output.find("with the lights point:0,5,0,1 + sun:0,50,3,3,3\n"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find(", 1 bounce, "), std::string::npos) << run.output;
+}
+
+TEST(Shade, AShadedFileIsKnownAsOne) {
+    TemporaryFolder folder;
+    ASSERT_EQ(run_kokage({"grow", "--leaves", "50", "-o", "bare.glb", "--quiet"}, folder.path()).status, 0);
+    const auto shade = [&](const char* from, const char* to) {
+        return run_kokage({"shade", from, "-o", to}, folder.path());
+    };
+    const auto description = [&](const char* file) { return run_kokage({"describe", file}, folder.path()).output; };
+    EXPECT_EQ(shade("bare.glb", "once.glb").output.find("shaded before"), std::string::npos);
+    EXPECT_NE(shade("once.glb", "twice.glb").output.find("shaded before"), std::string::npos);
+    EXPECT_EQ(description("bare.glb").find("shaded already"), std::string::npos);
+    EXPECT_NE(description("once.glb").find("shaded already"), std::string::npos);
+    EXPECT_EQ(description("once.glb"), description("twice.glb"));
+    const Json json = Json::parse(run_kokage({"describe", "once.glb", "--json"}, folder.path()).output);
+    EXPECT_EQ(json["shaded"], true);
+}
+
 TEST(Shade, MistakesAreFoundBeforeTheWork) {
     TemporaryFolder folder;
     std::ofstream(folder / "sky.exr") << "no image";
@@ -164,7 +257,16 @@ TEST(Shade, MistakesAreFoundBeforeTheWork) {
         {{"--bands", "0"}, "--bands"},
         {{"--bands", "41"}, "--bands"},
         {{"--maps", "-1"}, "--maps"},
-        {{"--gather", "sine"}, "--gather"},
+        {{"--method", "light-maps", "--gather", "sine"}, "rule or cosine"},
+        {{"--gather", "rule"}, "--gather"},
+        {{"--method", "paper", "--gather", "cosine"}, "--gather"},
+        {{"--method", "paper", "--effort", "9"}, "--effort"},
+        {{"--method", "path-traced", "--maps", "9"}, "--maps"},
+        {{"--method", "path-traced", "--bands", "9"}, "--bands"},
+        {{"--maps", "9", "--image", "x.png"}, "-o OUT.glb"},
+        {{"--seed", "-1"}, "--seed"},
+        {{"--seed", "1.5"}, "--seed"},
+        {{"--seed", "18446744073709551616"}, "--seed"},
         {{"--sun", "1,2,3"}, "--sun"},
         {{"--sun", "0,91"}, "--sun"},
         {{"--environment", "constant", "--sun", "0,45"}, "--sun"},
