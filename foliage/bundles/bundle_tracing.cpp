@@ -221,6 +221,8 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
     transport.link_open = make_open(linked, facets, true);
     const float sky_density = pixel_density(facets, settings.sky_pixels),
                 link_density = pixel_density(facets, settings.link_pixels);
+    transport.sky_open.pixels_per_area = sky_density * sky_density;
+    transport.link_open.pixels_per_area = link_density * link_density;
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
 
     const Side first_bark = facets.leaf_facet_count < facets.facets.size()

@@ -5,6 +5,7 @@
 #include "foliage/bundles/line_directions.h"
 #include "foliage/bundles/line_raster.h"
 
+#include <limits>
 #include <optional>
 
 namespace kokage::bundles {
@@ -14,6 +15,8 @@ namespace kokage::bundles {
 struct OpenFractions {
     static constexpr std::uint8_t kUnseen = 255;
     std::size_t facet_count = 0;
+    /// Of a facet that is met head on, in pixels per scaled unit^2; infinity = every facet is met.
+    float pixels_per_area = std::numeric_limits<float>::infinity();
     std::vector<std::uint8_t> near_end, far_end; ///< [direction][facet]; far_end is empty for lights
     const std::uint8_t* near_row(std::size_t direction) const { return near_end.data() + direction * facet_count; }
     const std::uint8_t* far_row(std::size_t direction) const { return far_end.data() + direction * facet_count; }

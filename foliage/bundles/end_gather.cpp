@@ -19,8 +19,9 @@ using Vec = hn::Vec<FloatTag>;
 /// What the kernels need of a block of facets, one array a quantity, padded to whole vectors.
 struct FacetArrays {
     static constexpr std::size_t kBlock = 64;
-    HWY_ALIGN float normal[3][kBlock]; // leaves
-    HWY_ALIGN float form[6][kBlock];   // bark
+    HWY_ALIGN float normal[3][kBlock];    // leaves
+    HWY_ALIGN float form[6][kBlock];      // bark
+    HWY_ALIGN float least_weight[kBlock]; // see gather_ends()
     HWY_ALIGN std::uint8_t near_open[kBlock], far_open[kBlock];
     HWY_ALIGN float sums[11][kBlock];
 };
@@ -67,6 +68,7 @@ void GatherBlock(FacetArrays& block, std::span<const glm::vec3> directions, cons
                 const Vec mixed = hn::MulAdd(form(3), hn::Mul(dx, dy),
                                              hn::MulAdd(form(4), hn::Mul(dx, dz), hn::Mul(form(5), hn::Mul(dy, dz))));
                 weight = hn::Sqrt(hn::Max(hn::Add(squares, hn::Add(mixed, mixed)), hn::Zero(d)));
+                weight = hn::Max(weight, hn::Load(d, block.least_weight + k));
                 weight = hn::IfThenElseZero(seen, weight);
                 add(0, weight);
                 weight = hn::Mul(weight, hn::Set(d, 1.f / 254));
@@ -81,7 +83,7 @@ void GatherBlock(FacetArrays& block, std::span<const glm::vec3> directions, cons
                     hn::Load(d, block.normal[0] + k), dx,
                     hn::MulAdd(hn::Load(d, block.normal[1] + k), dy, hn::Mul(hn::Load(d, block.normal[2] + k), dz)));
                 const auto front_near = hn::Lt(facing, hn::Zero(d));
-                weight = hn::IfThenElseZero(seen, hn::Abs(facing));
+                weight = hn::IfThenElseZero(seen, hn::Max(hn::Abs(facing), hn::Load(d, block.least_weight + k)));
                 add(0, weight);
                 weight = hn::Mul(weight, hn::Set(d, 1.f / 254));
                 const Vec near_weight = hn::Mul(weight, near_share), far_weight = hn::Mul(weight, far_share);
@@ -112,6 +114,7 @@ void GatherFacets(const Facets& facets, std::span<const glm::vec3> directions, c
                 block.normal[j][k] = source.normal[j];
             for (int j = 0; j < 6; ++j)
                 block.form[j][k] = source.form[j];
+            block.least_weight[k] = 1 / std::max(source.area * open.pixels_per_area, 1e-6f);
             for (auto& quantity : block.sums)
                 quantity[k] = 0;
         }

@@ -6,7 +6,12 @@
 
 namespace kokage::bundles {
 
-/// Weighted sums of one facet over directions; weight = projected share of the facet's area (|n.d| for a leaf).
+/// Weighted sums of one facet over directions.
+///
+/// weight = projected share of the facet's area (|n.d| for a leaf), over the chance that a line met it at all. A facet
+/// that covers less than a pixel is met by a line with a chance of its pixels, so that steep directions would be
+/// missing from the sums otherwise (down-facing sides would see a sixth too little of the sky above the horizon); what
+/// was met stands for what was not.
 struct EndSums {
     float weight = 0;                                ///< of the directions whose lines met the facet
     float front_open = 0, back_open = 0;             ///< weight x open share

@@ -23,7 +23,9 @@ TwinSums twin(const Facet& facet, std::size_t index, const std::vector<glm::vec3
         if (near_open == OpenFractions::kUnseen)
             continue;
         const double facing = glm::dot(glm::dvec3(facet.normal), glm::dvec3(directions[i]));
-        const double weight = facet.bark ? double(facet.projected_share(directions[i])) : std::abs(facing);
+        const double projected = facet.bark ? double(facet.projected_share(directions[i])) : std::abs(facing);
+        const double pixels = projected * facet.area * open.pixels_per_area;
+        const double weight = projected / std::min(pixels, 1.0); // over the chance of being met
         const double near_weight = weight * near_open / 254, far_weight = weight * far_open / 254;
         const glm::dvec3 from_near = near_weight * glm::dvec3(radiance.near_end[i]),
                          from_far = far_weight * glm::dvec3(radiance.far_end[i]);
@@ -49,7 +51,7 @@ TwinSums twin(const Facet& facet, std::size_t index, const std::vector<glm::vec3
     return sums;
 }
 
-/// Facets, open shares and light at random; a tenth of the facets are not met by a direction.
+/// Facets of 0 to 4 pixels, open shares and light at random; a tenth of the facets are not met by a direction.
 struct RandomEnds {
     Facets facets;
     LineDirections lines;
@@ -75,6 +77,7 @@ struct RandomEnds {
         facets.leaf_facet_count = std::uint32_t(leaves);
         lines = make_line_directions(12, 5);
         open.facet_count = leaves + bark;
+        open.pixels_per_area = 4;
         for (std::size_t i = 0; i < lines.directions.size(); ++i) {
             for (std::size_t f = 0; f < leaves + bark; ++f) {
                 const bool unseen = random.below(10) == 0;

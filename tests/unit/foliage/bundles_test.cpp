@@ -53,6 +53,20 @@ TEST(Bundles, ALoneLeafUnderSunAndSkyIsExact) {
     EXPECT_NEAR(solution.sky_visibility_front[0], 1, 1e-4);
 }
 
+// Most lines miss a small leaf, and of those that run along it more than of those that cross it.
+TEST(Bundles, ASmallLeafSeesTheSkyAboveTheHorizon) {
+    test::SmallTree two;
+    two.scene.optics = {test::realistic_leaf()};
+    const glm::vec3 across(0, 0, 1), up = glm::normalize(glm::vec3(1, 1, 0)); // tilted by 45 degrees
+    test::add_rectangle(two.scene, {0, 5, 0}, 0.15f * across, 0.15f * up);
+    test::add_rectangle(two.scene, {40, 5, 0}, across, up);
+    two.scene.ground = Ground{};
+    const Solution solution = shade(two, test::sky_and_sun(), bundles_options(20480));
+    const float tilt = std::sqrt(0.5f); // a side sees (1 + cosine of its tilt) / 2 of the sky
+    EXPECT_NEAR(std::min(solution.sky_visibility_front[0], solution.sky_visibility_back[0]), (1 - tilt) / 2, 0.006);
+    EXPECT_NEAR(std::max(solution.sky_visibility_front[0], solution.sky_visibility_back[0]), (1 + tilt) / 2, 0.006);
+}
+
 TEST(Bundles, AFurnaceIsOneEverywhere) {
     test::SmallTree small = test::ball_on_a_skeleton(1000, 3, {{0.5f, 0.9f, 0}, {0.5f, 0.1f, 1}});
     ShadingOptions options = bundles_options(40);
