@@ -2,6 +2,7 @@
 
 #include "common/services/parallel.h"
 #include "foliage/bundles/anderson.h"
+#include "foliage/bundles/ray_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -70,6 +71,7 @@ std::vector<Rgb> BounceOperator::gather_ground(const std::vector<glm::vec3>& gro
         const float inverse = ground_links_[s] > 0 ? 1 / ground_links_[s] : 0.f;
         sums[s] = {sums[s].r * inverse, sums[s].g * inverse, sums[s].b * inverse, 0};
     }
+    gather_ray_ground(transport_.rays, ground_excess, sums);
     return sums;
 }
 
@@ -149,6 +151,20 @@ Change change_between(const std::vector<Rgb>& before, const std::vector<Rgb>& af
     return change;
 }
 
+/// An accelerated step, unless it overshoots: where hardly anything absorbs, it may land far below zero, and light
+/// never is negative. Then the plain step.
+std::vector<Rgb> plausible(std::vector<Rgb> accelerated, const std::vector<Rgb>& plain) {
+    glm::dvec3 positive(0.0), negative(0.0);
+    for (const Rgb& value : accelerated) {
+        positive += glm::dvec3(glm::max(value.vec(), 0.f));
+        negative -= glm::dvec3(glm::min(value.vec(), 0.f));
+    }
+    for (int c = 0; c < 3; ++c)
+        if (negative[c] > 0.1 * positive[c])
+            return plain;
+    return accelerated;
+}
+
 double largest_albedo(const std::vector<Optics>& optics) {
     double largest = 0;
     for (const Optics& optic : optics) {
@@ -185,6 +201,8 @@ void BounceOperator::remove_echoes(const OutsideLight& outside, const std::vecto
             echo_mean[side] = Rgb::from(share * row_mean(side, light.radiance.data()));
         }
     });
+    clear_ray_sides(transport_.rays, echo);
+    clear_ray_sides(transport_.rays, echo_mean);
     std::vector<Rgb> irradiance(sides);
     parallel_blocks(sides, 2 * kPatchBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t side = from; side < to; ++side) {
@@ -193,6 +211,7 @@ void BounceOperator::remove_echoes(const OutsideLight& outside, const std::vecto
             irradiance[side] = Rgb::from(kPi * (1 - outside.open[side]) * excess);
         }
     });
+    clear_ray_sides(transport_.rays, irradiance);
     std::vector<Rgb> correction(sides);
     for (std::size_t patch = 0; patch < scene_.patches.size(); ++patch) {
         const Optics& optic = optics[scene_.patches[patch].optics];
@@ -257,7 +276,7 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
         if (done || sweep + 1 == most || limits.max_bounces > 0)
             result.radiance = std::move(next);
         else
-            result.radiance = acceleration.next(result.radiance, next);
+            result.radiance = plausible(acceleration.next(result.radiance, next), next);
         if (done)
             break;
     }

@@ -14,13 +14,6 @@ RasterScratch& scratch_of_thread() {
     return scratch;
 }
 
-/// Pixels a unit length so that a leaf covers `pixels` on average (its mean projected area is half its area).
-float pixel_density(const Facets& facets, float pixels) {
-    const double extent = glm::length(facets.high - facets.low);
-    const double wanted = std::sqrt(pixels / std::max(0.5 * facets.mean_leaf_area, 1e-30));
-    return float(std::clamp(wanted, 1.0, std::max(8192.0 / std::max(extent, 1e-6), 1.0)));
-}
-
 glm::vec2 grid_jitter(std::uint64_t seed, std::size_t direction) {
     Random random(seed, direction);
     const float u = random.uniform();
@@ -198,6 +191,13 @@ OpenFractions make_open(std::size_t directions, const Facets& facets, bool both)
 
 } // namespace
 
+float pixel_density(const Facets& facets, float pixels) {
+    const double extent = glm::length(facets.high - facets.low);
+    // The mean projected area of a leaf is half its area.
+    const double wanted = std::sqrt(pixels / std::max(0.5 * facets.mean_leaf_area, 1e-30));
+    return float(std::clamp(wanted, 1.0, std::max(8192.0 / std::max(extent, 1e-6), 1.0)));
+}
+
 GroundGrid make_ground_grid(const Facets& facets, float height_m) {
     GroundGrid grid;
     grid.height = float((double(height_m) - facets.centre.y) * facets.scale);
@@ -309,7 +309,7 @@ std::size_t BundleTransport::bytes() const {
     return size(sky_open.near_end) + size(sky_open.far_end) + size(link_open.near_end) + size(link_open.far_end) +
            size(links.begin) + size(links.middle) + size(links.neighbours) + size(links.ground) +
            size(links.ground_begin) + size(links.ground_pixel_area) + size(sky_lines.directions) +
-           size(link_lines.directions);
+           size(link_lines.directions) + rays.bytes();
 }
 
 } // namespace kokage::bundles

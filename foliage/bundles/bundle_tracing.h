@@ -4,6 +4,7 @@
 #include "foliage/bundles/facets.h"
 #include "foliage/bundles/line_directions.h"
 #include "foliage/bundles/line_raster.h"
+#include "foliage/bundles/ray_links.h"
 
 #include <limits>
 #include <optional>
@@ -25,6 +26,7 @@ struct OpenFractions {
 /// A square of ground texels around the tree, lit and shaded by it; beyond it the ground is taken to lie open.
 struct GroundGrid {
     static constexpr int kSize = 32;
+    static constexpr std::uint32_t kTexels = kSize * kSize;
     static constexpr int kStride = 2; ///< every 2nd pixel in u and v is followed to the ground
     float height = 0;                 ///< scaled y
     glm::vec2 low{0.f};               ///< scaled x, z of the corner
@@ -64,12 +66,17 @@ struct BundleSettings {
     std::uint64_t seed = 1;
 };
 
+/// Pixels a unit length so that a leaf of mean size covers `pixels` on average; fewer where the picture would be too
+/// large.
+float pixel_density(const Facets& facets, float pixels);
+
 /// Draws the bundles. The result does not depend on the number of threads.
 struct BundleTransport {
     LineDirections sky_lines, link_lines;
     OpenFractions sky_open, link_open;
     std::optional<GroundGrid> ground;
     Links links;
+    RayLinks rays; ///< of leaves that are too small for lines; see ray_link_tracing.h
     std::size_t fragments = 0;
     std::size_t bytes() const;
 };

@@ -4,6 +4,8 @@
 #include "foliage/bundles/drawn_lights.h"
 #include "foliage/bundles/half_difference.h"
 #include "foliage/bundles/outside_light.h"
+#include "foliage/bundles/ray_lights.h"
+#include "foliage/bundles/ray_link_tracing.h"
 #include "foliage/capture_directions.h"
 #include "foliage/divided_leaves.h"
 #include "foliage/light_map_field.h"
@@ -36,7 +38,7 @@ class BundlesTransport : public Transport {
 
     Solution solve(const Environment& environment, Progress& progress) override;
     void set_optics(const std::vector<Optics>& optics) override { optics_ = optics; }
-    std::size_t bytes() const override { return transport_.bytes() + (lights_ ? lights_->bytes() : 0); }
+    std::size_t bytes() const override;
 
   private:
     struct Lit {
@@ -49,6 +51,7 @@ class BundlesTransport : public Transport {
     };
 
     void draw(const BundleEffort& effort, Progress& progress);
+    void trace_small_leaves(Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
     void fill(Solution& solution, const Lit& lit) const;
@@ -63,6 +66,13 @@ class BundlesTransport : public Transport {
     BundleEffort effort_;
     Facets facets_;
     BundleTransport transport_;
+    struct Rays { ///< for leaves that are too small for lines
+        explicit Rays(const PatchScene& scene) : queries(scene), points(scene) {}
+        RayQueries queries;
+        PatchPoints points;
+    };
+    std::unique_ptr<Rays> rays_;
+    std::unique_ptr<RayLights> ray_lights_;
     std::unique_ptr<BounceOperator> bounces_;
     std::unique_ptr<DrawnLights> lights_;
     std::vector<Rgb> last_radiance_;
@@ -73,11 +83,32 @@ void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
     Stopwatch watch;
     effort_ = effort;
     transport_ = trace_bundles(scene_, facets_, effort.lines, progress);
+    pending_.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
+    trace_small_leaves(progress);
     bounces_ = std::make_unique<BounceOperator>(scene_, transport_);
     if (!lights_)
         lights_ = std::make_unique<DrawnLights>(scene_, facets_, transport_.ground);
+    lights_->set_ray_lights(ray_lights_.get());
     lights_->clear();
-    pending_.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
+}
+
+void BundlesTransport::trace_small_leaves(Progress& progress) {
+    ray_lights_.reset();
+    const std::vector<std::uint32_t> small = leaves_too_small_for_lines(scene_, facets_, effort_.lines);
+    if (small.empty())
+        return;
+    Stopwatch watch;
+    if (!rays_)
+        rays_ = std::make_unique<Rays>(scene_);
+    add_ray_links(rays_->queries, rays_->points, facets_, small, rays_a_side(effort_.lines), effort_.lines.seed,
+                  transport_, progress);
+    ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
+    pending_.stages.push_back({"rays from small leaves", watch.cpu(), watch.wall()});
+}
+
+std::size_t BundlesTransport::bytes() const {
+    return transport_.bytes() + (lights_ ? lights_->bytes() : 0) + (ray_lights_ ? ray_lights_->bytes() : 0) +
+           (rays_ ? rays_->queries.bytes() + rays_->points.bytes() : 0);
 }
 
 OutsideLight BundlesTransport::outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams,
@@ -228,6 +259,10 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     count("line directions", transport_.sky_lines.directions.size() + transport_.link_lines.directions.size());
     count("fragments", transport_.fragments);
     count("links", transport_.links.neighbours.size());
+    if (!transport_.rays.empty()) {
+        count("leaves too small for lines", transport_.rays.patches.size());
+        count("rays from small leaves", transport_.rays.rays());
+    }
     count("sweeps", solution.residuals.size());
     return solution;
 }

@@ -10,6 +10,11 @@
 namespace kokage::bundles {
 namespace {
 
+/// A ray costs as much as a few pixels: an eighth of the pixels that a leaf would get, at least 4.
+int rays_for(float samples) {
+    return std::max(4, int(samples / 8));
+}
+
 /// The same place and shape; colour and strength may differ (for regions, which hold both in their texels, they may
 /// not).
 bool same_shape(const DistantLight& a, const DistantLight& b) {
@@ -52,6 +57,8 @@ DrawnLights::DrawnLights(const PatchScene& scene, const Facets& facets, const st
 void DrawnLights::clear() {
     distant_.clear();
     points_.clear();
+    if (ray_lights_)
+        ray_lights_->clear();
 }
 
 const DrawnLights::Distant& DrawnLights::draw(const DistantLight& light, const LightEffort& effort,
@@ -144,8 +151,7 @@ void DrawnLights::light_points(const Environment& environment, const BundleEffor
         } else {
             if (!queries_)
                 queries_ = std::make_unique<RayQueries>(scene_);
-            // A ray costs as much as a few pixels: an eighth of the pixels of a distant light, shared among the lamps.
-            const int samples = std::max(4, effort.light_samples / 8 / int(environment.point_lights.size()));
+            const int samples = rays_for(float(effort.light_samples) / float(environment.point_lights.size()));
             kept.push_back(
                 trace_point_light(*queries_, facets_, ground_, light.position, samples, hash64(seed + kept.size())));
             rays += kept.back().rays;
@@ -170,6 +176,8 @@ BeamLight DrawnLights::light(const Environment& environment, const BundleEffort&
                                 "together they give " + std::to_string(100 * plan.merged_share) + " % of the light",
                                 std::to_string(2 * plan.merged) + " rasters"});
     drawn_beams_ = 0;
+    if (ray_lights_)
+        ray_lights_->begin();
     std::vector<Distant> kept;
     kept.reserve(plan.drawn.size());
     for (const LightEffort& planned : plan.drawn) {
@@ -178,7 +186,16 @@ BeamLight DrawnLights::light(const Environment& environment, const BundleEffort&
         if (!(luminance(planned.irradiance) > 0))
             continue;
         const Distant& drawn = draw(light, planned, kept, hash64(seed) + planned.light);
-        add(drawn, ratio(planned.irradiance, drawn.light.irradiance), sum);
+        const glm::vec3 scale = ratio(planned.irradiance, drawn.light.irradiance);
+        add(drawn, scale, sum);
+        if (ray_lights_)
+            ray_lights_->add(drawn.light, scale, rays_for(float(planned.beams) * planned.pixels),
+                             hash64(seed) + planned.light);
+    }
+    if (ray_lights_) {
+        ray_lights_->finish(sum.halves);
+        if (ray_lights_->rays() > 0)
+            report.counts.push_back({"light rays from small leaves", ray_lights_->rays()});
     }
     distant_ = std::move(kept);
     report.counts.push_back({"light rasters", drawn_beams_});

@@ -5,6 +5,7 @@
 #include "foliage/bundles/effort.h"
 #include "foliage/bundles/light_beams.h"
 #include "foliage/bundles/point_beams.h"
+#include "foliage/bundles/ray_lights.h"
 
 #include <memory>
 
@@ -22,6 +23,8 @@ class DrawnLights {
   public:
     /// References must outlive it.
     DrawnLights(const PatchScene& scene, const Facets& facets, const std::optional<GroundGrid>& ground);
+    /// Has the leaves that are too small for beams lit by rays from now on (null: none); it must outlive this.
+    void set_ray_lights(RayLights* ray_lights) { ray_lights_ = ray_lights; }
     /// Draws the lights that are new, forgets those that are gone, and adds all up.
     BeamLight light(const Environment& environment, const BundleEffort& effort, double negligible, std::uint64_t seed,
                     Progress& progress, WorkReport& report);
@@ -50,6 +53,7 @@ class DrawnLights {
     std::vector<Distant> distant_;
     std::vector<PointTransfer> points_;
     std::unique_ptr<RayQueries> queries_; ///< built for the first point light
+    RayLights* ray_lights_ = nullptr;
     std::size_t drawn_beams_ = 0;
 };
 

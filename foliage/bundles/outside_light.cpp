@@ -2,6 +2,7 @@
 
 #include "common/services/parallel.h"
 #include "foliage/bundles/end_gather.h"
+#include "foliage/bundles/ray_ends.h"
 
 #include <algorithm>
 #include <cmath>
@@ -98,10 +99,10 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
     SkyLight sky;
     EndRadiance sky_ends = end_radiance(remainder, transport.sky_lines),
                 link_ends = end_radiance(remainder, transport.link_lines);
+    glm::vec3 ground_radiance(0.f);
     if (scene.ground) {
         sky.open_ground_irradiance = horizontal_irradiance(remainder);
-        const glm::vec3 ground_radiance =
-            scene.ground->albedo / kPi * (sky.open_ground_irradiance + light_on_open_ground);
+        ground_radiance = scene.ground->albedo / kPi * (sky.open_ground_irradiance + light_on_open_ground);
         std::fill(sky_ends.far_end.begin(), sky_ends.far_end.end(), ground_radiance);
         std::fill(link_ends.far_end.begin(), link_ends.far_end.end(), ground_radiance);
     }
@@ -136,6 +137,7 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
             store_patch(facets, sums[0], std::uint32_t(patch), sky.all);
     });
     fill_unseen(facets, sums[0], sky.all);
+    gather_ray_ends(transport, remainder, ground_radiance, sky);
     return sky;
 }
 
@@ -156,6 +158,7 @@ std::vector<glm::vec3> mean_open_directions(const Facets& facets, const BundleTr
                 facets.facets[f].area / sums[f].weight *
                 glm::vec3(sums[f].front[0] + sums[f].back[0], sums[f].front[1] + sums[f].back[1],
                           sums[f].front[2] + sums[f].back[2]);
+    sum_ray_open_directions(transport.rays, facets, means);
     for (std::uint32_t patch = 0; patch < facets.patch_count; ++patch) {
         const float length = glm::length(means[patch]);
         means[patch] = length > 1e-6f * facets.patch_area[patch] && length > 0 ? means[patch] / length : glm::vec3(0.f);

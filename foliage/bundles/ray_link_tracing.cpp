@@ -1,0 +1,196 @@
+#include "foliage/bundles/ray_link_tracing.h"
+
+#include "common/services/parallel.h"
+#include "foliage/cosine_direction.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kokage::bundles {
+namespace {
+
+constexpr std::size_t kPatchesAtOnce = 8192; ///< bounds the memory of rays under way
+constexpr std::size_t kPatchBlock = 16;
+constexpr int kSkyCells = 2 * 32 * 32;      ///< 6 degrees a cell: the sky without its lights is smooth
+constexpr std::uint32_t kEnd = 0x80000000u; ///< marks a ray that met no patch; the other bits hold its entry of `ends`
+
+/// Sides that rays met, row by row as in RayLinks.
+struct Met {
+    std::vector<std::uint32_t> begin{0};
+    std::vector<Side> sides;
+};
+
+class RayTracing {
+  public:
+    RayTracing(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
+               const std::optional<GroundGrid>& ground, const RayLinks& rays, std::uint64_t seed)
+        : queries_(queries), points_(points), facets_(facets), ground_(ground), rays_(rays), seed_(seed) {}
+
+    /// Fills the four rows of a patch with sides, or kEnd + entry. False if no solid point was found.
+    bool look_around(std::uint32_t patch, std::span<std::uint32_t> seen) const {
+        for (std::uint32_t row = 0; row < 4; ++row)
+            for (std::uint32_t i = 0; i < rays_.rays_a_row; ++i) {
+                PathNumbers numbers(hash64(seed_ ^ hash64(4 * std::uint64_t(patch) + row)), i);
+                PatchPoint point;
+                if (!points_.sample(patch, numbers, point))
+                    return false;
+                const glm::vec3 direction = cosine_direction(row < 2 ? point.normal : -point.normal, numbers.pair());
+                seen[row * rays_.rays_a_row + i] = look(point.position, direction);
+            }
+        return true;
+    }
+
+  private:
+    std::uint32_t look(const glm::vec3& from, const glm::vec3& direction) const {
+        const PatchScene& scene = queries_.scene();
+        RayHit hit;
+        const bool met =
+            queries_.first_hit(from, direction, queries_.ray_offset(), std::numeric_limits<float>::infinity(), hit);
+        if (met && !hit.ground)
+            return 2 * scene.triangle_patch[hit.triangle] + (glm::dot(hit.geometric_normal, direction) > 0);
+        if (!ground_ || direction.y >= 0)
+            return kEnd + std::uint32_t(rays_.sky_cells.cell(direction));
+        return kEnd + std::uint32_t(rays_.sky_cells.size()) +
+               (met ? texel_under(from + hit.distance * direction) : GroundGrid::kTexels);
+    }
+
+    std::uint32_t texel_under(const glm::vec3& point) const {
+        const glm::vec3 scaled((glm::dvec3(point) - facets_.centre) * facets_.scale);
+        const int texel = ground_->texel_at(scaled.x, scaled.z);
+        return texel >= 0 ? std::uint32_t(texel) : GroundGrid::kTexels;
+    }
+
+    const RayQueries& queries_;
+    const PatchPoints& points_;
+    const Facets& facets_;
+    const std::optional<GroundGrid>& ground_;
+    const RayLinks& rays_;
+    std::uint64_t seed_;
+};
+
+/// Sorts what the rays of one patch saw into rows of sides and rows of ends.
+void append(std::uint32_t patch, std::span<const std::uint32_t> seen, RayLinks& rays, Met& met) {
+    rays.patches.push_back(patch);
+    for (std::uint32_t row = 0; row < 4; ++row) {
+        for (std::uint32_t code : seen.subspan(row * std::size_t(rays.rays_a_row), rays.rays_a_row))
+            if (code & kEnd)
+                rays.ends.push_back(std::uint16_t(code & ~kEnd));
+            else
+                met.sides.push_back(code);
+        rays.end_begin.push_back(std::uint32_t(rays.ends.size()));
+        met.begin.push_back(std::uint32_t(met.sides.size()));
+    }
+}
+
+/// Compressed rows with those of the traced patches replaced. A row in which no ray met anything keeps one neighbour
+/// of what lines found: rows may not be empty, and its closed share is 0.
+void replace_rows(const RayLinks& rays, const Met& met, Links& links) {
+    const std::size_t sides = links.begin.size() - 1;
+    Links old;
+    old.begin.swap(links.begin);
+    old.middle.swap(links.middle);
+    old.neighbours.swap(links.neighbours);
+    links.begin.reserve(sides + 1);
+    links.middle.reserve(sides);
+    links.neighbours.reserve(old.neighbours.size() + met.sides.size());
+    std::size_t next = 0; // of rays.patches
+    for (std::size_t side = 0; side < sides; ++side) {
+        links.begin.push_back(std::uint32_t(links.neighbours.size()));
+        while (next < rays.patches.size() && rays.patches[next] < side / 2)
+            ++next;
+        const bool traced = next < rays.patches.size() && rays.patches[next] == side / 2;
+        const std::size_t row = 4 * next + 2 * (side % 2);
+        if (traced && met.begin[row] < met.begin[row + 2]) {
+            const Side* sees = met.sides.data();
+            links.neighbours.insert(links.neighbours.end(), sees + met.begin[row], sees + met.begin[row + 1]);
+            links.middle.push_back(std::uint32_t(links.neighbours.size()));
+            links.neighbours.insert(links.neighbours.end(), sees + met.begin[row + 1], sees + met.begin[row + 2]);
+        } else {
+            const Side* sees = old.neighbours.data();
+            const std::uint32_t begin = old.begin[side], end = traced ? begin + 1 : old.begin[side + 1];
+            links.middle.push_back(links.begin.back() + std::min(old.middle[side], end) - begin);
+            links.neighbours.insert(links.neighbours.end(), sees + begin, sees + end);
+        }
+    }
+    links.begin.push_back(std::uint32_t(links.neighbours.size()));
+}
+
+} // namespace
+
+std::vector<std::uint32_t> leaves_too_small_for_lines(const PatchScene& scene, const Facets& facets,
+                                                      const BundleSettings& settings) {
+    constexpr double kFarBelow = 1.0 / 16, kFewLines = 8, kBelow = 1.0 / 4;
+    std::vector<double> solid(facets.patch_area.begin(), facets.patch_area.end());
+    if (!scene.masks.empty()) {
+        solid = solid_areas(scene);
+        for (double& area : solid)
+            area *= facets.scale * facets.scale;
+    }
+    double sum = 0;
+    std::size_t leaves = 0;
+    auto counts = [&](std::size_t p) {
+        return scene.patches[p].kind == PatchKind::leaf && solid[p] > 0 && facets.patch_area[p] > 0;
+    };
+    for (std::size_t p = 0; p < scene.patches.size(); ++p)
+        if (counts(p)) {
+            sum += solid[p];
+            ++leaves;
+        }
+    if (leaves == 0)
+        return {};
+    // A leaf's mean projected area is half its area.
+    const double density = pixel_density(facets, settings.link_pixels),
+                 lines_per_area = settings.link_directions * density * density / 2;
+    const double wanted = double(settings.link_directions) * double(settings.link_pixels) * (sum / double(leaves)) /
+                          double(facets.mean_leaf_area);
+    std::vector<std::uint32_t> small;
+    for (std::size_t p = 0; p < scene.patches.size(); ++p) {
+        const double lines = lines_per_area * solid[p];
+        if (counts(p) && (lines < kFarBelow * wanted || (lines < kFewLines && lines < kBelow * wanted)))
+            small.push_back(std::uint32_t(p));
+    }
+    return small;
+}
+
+std::uint32_t rays_a_side(const BundleSettings& settings) {
+    // As many as directions: a leaf of mean size gets three times as many lines, but those of one direction are alike.
+    const int directions = settings.sky_directions + settings.link_directions;
+    return 2 * std::uint32_t(std::clamp((directions + 1) / 2, 8, 4096));
+}
+
+void add_ray_links(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
+                   const std::vector<std::uint32_t>& patches, std::uint32_t rays_a_side, std::uint64_t seed,
+                   BundleTransport& transport, Progress& progress) {
+    RayLinks& rays = transport.rays;
+    rays = {};
+    if (patches.empty())
+        return;
+    rays.rays_a_row = std::max(1u, rays_a_side / 2);
+    rays.sky_cells = make_capture_directions(1, kSkyCells);
+    rays.end_begin.push_back(0);
+    const RayTracing tracing(queries, points, facets, transport.ground, rays, seed);
+    Met met;
+    const std::size_t rays_a_patch = 4 * std::size_t(rays.rays_a_row);
+    std::vector<std::uint32_t> seen;
+    std::vector<std::uint8_t> solid;
+    progress.begin("tracing rays from small leaves", patches.size());
+    for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
+        const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
+        seen.resize(count * rays_a_patch);
+        solid.resize(count);
+        parallel_blocks(count, kPatchBlock, [&](std::size_t from, std::size_t to) {
+            progress.throw_if_stopped();
+            for (std::size_t i = from; i < to; ++i)
+                solid[i] =
+                    tracing.look_around(patches[first + i], std::span(seen).subspan(i * rays_a_patch, rays_a_patch));
+            progress.advance(to - from);
+        });
+        for (std::size_t i = 0; i < count; ++i)
+            if (solid[i])
+                append(patches[first + i], std::span(seen).subspan(i * rays_a_patch, rays_a_patch), rays, met);
+    }
+    replace_rows(rays, met, transport.links);
+}
+
+} // namespace kokage::bundles
