@@ -190,7 +190,7 @@ BeamLight DrawnLights::light(const Environment& environment, const BundleEffort&
         add(drawn, scale, sum);
         if (ray_lights_)
             ray_lights_->add(drawn.light, scale, rays_for(float(planned.beams) * planned.pixels),
-                             hash64(seed) + planned.light);
+                             hash64(seed) + planned.light, progress);
     }
     if (ray_lights_) {
         ray_lights_->finish(sum.halves);

@@ -12,13 +12,15 @@ namespace kokage::bundles {
 RayLights::RayLights(const RayQueries& queries, const PatchPoints& points, const std::vector<std::uint32_t>& patches)
     : queries_(queries), points_(points), patches_(patches) {}
 
-RayLights::Transfer RayLights::trace(const DistantLight& light, int rays_a_half, std::uint64_t seed) const {
+RayLights::Transfer RayLights::trace(const DistantLight& light, int rays_a_half, std::uint64_t seed,
+                                     Progress& progress) const {
     Transfer transfer;
     transfer.shape = shape_key(light);
     transfer.irradiance = light.irradiance;
     transfer.rays_a_half = rays_a_half;
     transfer.received.assign(4 * patches_.size(), glm::vec3(0.f));
     parallel_blocks(patches_.size(), 64, [&](std::size_t from, std::size_t to) {
+        progress.throw_if_stopped();
         for (std::size_t i = from; i < to; ++i)
             for (std::uint64_t h = 0; h < 2; ++h)
                 for (int r = 0; r < rays_a_half; ++r) {
@@ -46,7 +48,8 @@ void RayLights::begin() {
         transfer.used = false;
 }
 
-void RayLights::add(const DistantLight& light, const glm::vec3& scale, int rays, std::uint64_t seed) {
+void RayLights::add(const DistantLight& light, const glm::vec3& scale, int rays, std::uint64_t seed,
+                    Progress& progress) {
     const int half = std::max(2, (rays + 1) / 2);
     const std::uint64_t shape = shape_key(light);
     // Two lights in the same place take a transfer each, as their beams do.
@@ -55,7 +58,7 @@ void RayLights::add(const DistantLight& light, const glm::vec3& scale, int rays,
     if (found == kept_.end())
         found = kept_.insert(kept_.end(), Transfer{});
     if (2 * half > 3 * found->rays_a_half) {
-        *found = trace(light, half, seed);
+        *found = trace(light, half, seed, progress);
         rays_ += 2 * std::uint64_t(half) * patches_.size();
     }
     found->used = true;

@@ -1,6 +1,7 @@
 #pragma once
 // Distant lights on leaves that are too small for beams (see ray_links.h): shadow rays, kept until the light moves.
 #include "common/environment/environment.h"
+#include "common/services/progress.h"
 #include "common/trace/ray_queries.h"
 #include "foliage/bundles/bounce_sweeps.h"
 #include "foliage/patch_points.h"
@@ -17,8 +18,8 @@ class RayLights {
     /// Starts a new sum over lights.
     void begin();
     /// Adds `scale` x a light, which gets `rays` shadow rays of each patch (at least 2 a half) if it is new or has
-    /// become much more important than it was when it was traced.
-    void add(const DistantLight& light, const glm::vec3& scale, int rays, std::uint64_t seed);
+    /// become much more important than it was when it was traced. Throws Stopped.
+    void add(const DistantLight& light, const glm::vec3& scale, int rays, std::uint64_t seed, Progress& progress);
     /// Writes the sum over what beams gave to those patches, and forgets lights that were not added.
     void finish(std::vector<Rgb> (&halves)[2]);
     void clear() { kept_.clear(); }
@@ -34,7 +35,7 @@ class RayLights {
         bool used = false;
         std::vector<glm::vec3> received; ///< irradiance; 4 i + 2 k + h as in RayLinks
     };
-    Transfer trace(const DistantLight& light, int rays_a_half, std::uint64_t seed) const;
+    Transfer trace(const DistantLight& light, int rays_a_half, std::uint64_t seed, Progress& progress) const;
 
     const RayQueries& queries_;
     const PatchPoints& points_;

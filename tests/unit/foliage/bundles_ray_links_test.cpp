@@ -243,11 +243,17 @@ TEST(BundlesRayLinks, AFurnaceOfTinyAndLargeLeavesIsOneEverywhere) {
                 ASSERT_NEAR(value[c], 1, 1e-4);
 }
 
-TEST(BundlesRayLinks, ATinyLeafAboveAWideCardSeesIt) {
+/// A wide card and, half a metre above its middle, a tiny leaf.
+test::SmallTree leaf_above_a_card(const Optics& leaf, const Optics& card) {
     test::SmallTree pair;
-    pair.scene.optics = {test::realistic_leaf(), {glm::vec3(0.5f), glm::vec3(0)}};
+    pair.scene.optics = {leaf, card};
     test::add_rectangle(pair.scene, {-100, 0, -100}, {0, 0, 200}, {200, 0, 0}, 1); // fronts are +Y
     test::add_rectangle(pair.scene, {0, 0.5f, 0}, {0, 0, 0.001f}, {0.001f, 0, 0});
+    return pair;
+}
+
+TEST(BundlesRayLinks, ATinyLeafAboveAWideCardSeesIt) {
+    const test::SmallTree pair = leaf_above_a_card(test::realistic_leaf(), {glm::vec3(0.5f), glm::vec3(0)});
     Environment environment = test::constant_environment({1, 2, 3});
     DistantLight sun;
     sun.direction = {0.6f, 0.8f, 0};
@@ -264,6 +270,41 @@ TEST(BundlesRayLinks, ATinyLeafAboveAWideCardSeesIt) {
     EXPECT_LT(glm::distance(solution.radiance.back[1], back), 0.01f * glm::length(back));
     EXPECT_NEAR(solution.sky_visibility_front[1], 1, 1e-6);
     EXPECT_NEAR(solution.sky_visibility_back[1], 0, 0.05);
+}
+
+TEST(BundlesRayLinks, LightsAddUpAndCastShadowsOnTinyLeaves) {
+    const Optics leaf{{0.1f, 0.2f, 0.3f}, glm::vec3(0)};
+    Environment environment = test::constant_environment(glm::vec3(0));
+    DistantLight window; // two texels of different colours
+    window.texels = {{{0.6f, 0.8f, 0}, {4, 0, 1}, 0}, {{0, 0.8f, 0.6f}, {0, 2, 1}, 0}};
+    window.direction = glm::normalize(glm::vec3(1, 2, 1));
+    window.half_angle = 0.8f;
+    window.irradiance = {4, 2, 2};
+    DistantLight lamp;
+    lamp.direction = {0, 1, 0};
+    lamp.irradiance = {1, 1, 3};
+    DistantLight from_below = lamp;
+    from_below.direction = {0, -1, 0}; // the card is in the way
+    environment.distant_lights = {window, lamp, from_below};
+    const test::SmallTree pair = leaf_above_a_card(leaf, {glm::vec3(0), glm::vec3(0)});
+    ShadingOptions options;
+    options.effort = 400;
+    const auto transport = make_transport(pair.scene, pair.tree, options, silent_progress());
+    const auto check = [&](const Solution& solution) {
+        glm::vec3 expected(0.f);
+        for (const DistantLight& light : environment.distant_lights)
+            for (const DistantLight::Texel& texel : light.texels)
+                expected += 0.8f * texel.irradiance;
+        expected = leaf.reflectance / kPi * (expected + environment.distant_lights[1].irradiance);
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(solution.radiance.front[1][c], expected[c], 0.06f * expected[c]) << c;
+        EXPECT_EQ(solution.radiance.back[1], glm::vec3(0));
+    };
+    check(transport->solve(environment, silent_progress()));
+    environment.distant_lights[1].irradiance = {5, 0, 1};
+    check(transport->solve(environment, silent_progress()));
+    environment.distant_lights.pop_back();
+    check(transport->solve(environment, silent_progress()));
 }
 
 TEST(BundlesRayLinks, ALoneTinyLeafNeedsNoRays) {
