@@ -38,7 +38,7 @@ void MapCoefficients::scale_bands(std::span<const double> factors) {
                     channel(map, c)[sh_index(l, m)] *= float(factors[std::size_t(l)]);
 }
 
-CapturedMaps::CapturedMaps(const RayQueries& queries, const GroundGrid& ground, std::vector<LightMapPlace> places,
+CapturedMaps::CapturedMaps(const RayQueries& queries, const GroundCells& ground, std::vector<LightMapPlace> places,
                            int bands, int least_directions, Progress& progress)
     : places_(std::move(places)), bands_(bands), directions_(make_capture_directions(bands, least_directions)) {
     const std::size_t count = sh_count(bands);

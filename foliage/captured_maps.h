@@ -41,7 +41,7 @@ class MapCoefficients {
 class CapturedMaps {
   public:
     /// Traces what every place sees in at least `least_directions` directions.
-    CapturedMaps(const RayQueries& queries, const GroundGrid& ground, std::vector<LightMapPlace> places, int bands,
+    CapturedMaps(const RayQueries& queries, const GroundCells& ground, std::vector<LightMapPlace> places, int bands,
                  int least_directions, Progress& progress);
 
     const std::vector<LightMapPlace>& places() const { return places_; }

@@ -19,7 +19,7 @@ std::uint64_t patch_seed(std::uint64_t seed, std::uint64_t use, std::size_t patc
 
 } // namespace
 
-FirstLightByRays::FirstLightByRays(const RayQueries& queries, const GroundGrid& ground, int rays_a_side,
+FirstLightByRays::FirstLightByRays(const RayQueries& queries, const GroundCells& ground, int rays_a_side,
                                    std::uint64_t seed, Progress& progress)
     : queries_(queries), points_(queries.scene()), rays_a_side_(rays_a_side), seed_(seed),
       cells_(make_capture_directions(1, kSkyCells)), ground_(ground) {

@@ -18,7 +18,7 @@ class FirstLightByRays {
   public:
     /// `rays_a_side` (at least 1) cosine-distributed rays from stratified points. As many go to the lights together, at
     /// least 2 to each: many lights average out by themselves.
-    FirstLightByRays(const RayQueries& queries, const GroundGrid& ground, int rays_a_side, std::uint64_t seed,
+    FirstLightByRays(const RayQueries& queries, const GroundCells& ground, int rays_a_side, std::uint64_t seed,
                      Progress& progress);
 
     FirstLight of(const Environment& environment, Progress& progress);
@@ -49,7 +49,7 @@ class FirstLightByRays {
     CaptureDirections cells_; ///< of the sky
     std::vector<std::uint16_t>
         seen_cell_; ///< per patch, side and ray: cell of sky, or cells_.size() + cell of the ground, or kNothing
-    GroundGrid ground_;
+    GroundCells ground_;
     std::unordered_map<std::uint64_t, LightTransfer> lights_;
     std::uint64_t rays_ = 0;
 };

@@ -10,7 +10,7 @@ namespace {
 constexpr int kLeastDirections = 2 * 12 * 12; // of the whole sphere; an even number of rings has none on the horizon
 constexpr int kLightSamples = 8;
 
-std::vector<CapturePoint> cell_centres(const GroundGrid& grid) {
+std::vector<CapturePoint> cell_centres(const GroundCells& grid) {
     std::vector<CapturePoint> centres;
     for (std::size_t cell = 0; cell + 1 < grid.size(); ++cell)
         centres.push_back({grid.centre(cell), 0.f});
@@ -39,7 +39,7 @@ glm::vec3 seen_radiance(std::uint32_t seen, const SideRadiance& tree, std::span<
 }
 
 GroundLight::GroundLight(const RayQueries& queries, std::uint64_t seed, Progress& progress)
-    : grid_(make_ground_grid(queries.scene())), sphere_(make_capture_directions(1, kLeastDirections)),
+    : grid_(make_ground_cells(queries.scene())), sphere_(make_capture_directions(1, kLeastDirections)),
       visibility_(queries, cell_centres(grid_), kLightSamples, seed) {
     std::vector<glm::vec3> directions;
     double sum = 0;

@@ -10,7 +10,7 @@ class GroundLight {
     /// Traces what every cell's centre sees. `queries` must outlive it. Without a ground everything is empty.
     GroundLight(const RayQueries& queries, std::uint64_t seed, Progress& progress);
 
-    const GroundGrid& grid() const { return grid_; }
+    const GroundCells& grid() const { return grid_; }
     /// Takes in a new environment: its lights and sky on every cell. Lights that did not move are not traced again.
     void set_environment(const Environment& environment, Progress& progress);
     /// Outgoing radiance of every cell under that environment and a lit tree; as long as grid().size().
@@ -22,7 +22,7 @@ class GroundLight {
   private:
     glm::vec3 irradiance_from_tree(std::size_t cell, const SideRadiance& tree) const;
 
-    GroundGrid grid_;
+    GroundCells grid_;
     CaptureDirections sphere_;
     std::vector<std::size_t> upper_;    ///< cells of the sphere above the horizon
     std::vector<float> cosine_weights_; ///< of `upper_`; they add up to pi

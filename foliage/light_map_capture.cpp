@@ -15,7 +15,7 @@ bool on_back_of_bark(const PatchScene& scene, const RayHit& hit, const glm::vec3
            glm::dot(hit.geometric_normal, direction) > 0;
 }
 
-std::uint32_t what_is_seen(const PatchScene& scene, const GroundGrid& ground, const CapturePoint& point,
+std::uint32_t what_is_seen(const PatchScene& scene, const GroundCells& ground, const CapturePoint& point,
                            const glm::vec3& direction, const RayHit& hit) {
     if (hit.ground)
         return std::uint32_t(2 * scene.patches.size() + ground.cell(point.position + hit.distance * direction));
@@ -36,7 +36,7 @@ bool first_hit_outside_wood(const RayQueries& queries, const CapturePoint& point
     return false;
 }
 
-Capture capture(const RayQueries& queries, const GroundGrid& ground, std::span<const CapturePoint> points,
+Capture capture(const RayQueries& queries, const GroundCells& ground, std::span<const CapturePoint> points,
                 std::span<const glm::vec3> directions, Progress& progress) {
     constexpr float kFar = std::numeric_limits<float>::infinity();
     Capture result;

@@ -4,7 +4,7 @@
 #include "common/services/progress.h"
 #include "common/trace/ray_queries.h"
 #include "foliage/capture_directions.h"
-#include "foliage/ground_grid.h"
+#include "foliage/ground_cells.h"
 
 #include <cstdint>
 #include <limits>
@@ -37,7 +37,7 @@ struct Capture {
 };
 
 /// Traces one ray per point and direction. Alpha-masked holes let rays through. Throws Stopped.
-Capture capture(const RayQueries& queries, const GroundGrid& ground, std::span<const CapturePoint> points,
+Capture capture(const RayQueries& queries, const GroundCells& ground, std::span<const CapturePoint> points,
                 std::span<const glm::vec3> directions, Progress& progress);
 
 /// First hit in (clearance, far) of a ray from a point that may stand inside wood. Bark is closed, so a ray that meets

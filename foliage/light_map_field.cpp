@@ -31,7 +31,7 @@ LightMapFieldOptions checked(const LightMapFieldOptions& options) {
 
 } // namespace
 
-LightMapField::LightMapField(const RayQueries& queries, const GroundGrid& ground, const Tree& tree,
+LightMapField::LightMapField(const RayQueries& queries, const GroundCells& ground, const Tree& tree,
                              const LightMapFieldOptions& options, Progress& progress)
     : options_(checked(options)), geometry_(patch_geometry(queries.scene())),
       placement_(place_light_maps(tree, options.maps)), places_(placement_.places),

@@ -29,7 +29,7 @@ struct SideIrradiance {
 class LightMapField {
   public:
     /// `queries` must outlive it. Throws InputError for options out of range.
-    LightMapField(const RayQueries& queries, const GroundGrid& ground, const Tree& tree,
+    LightMapField(const RayQueries& queries, const GroundCells& ground, const Tree& tree,
                   const LightMapFieldOptions& options, Progress& progress);
 
     /// Radiance of patches and of ground cells (as long as the grid, or empty: dark) as the maps will see it. Sky and

@@ -210,11 +210,11 @@ void BundlesTransport::add_host_data(const Environment& environment, Solution& s
     if (tree_ && scene_.leaf_count == tree_->leaves.size() && scene_.leaf_count > 0) {
         constexpr int kDefaultMaps = 15;
         const RayQueries queries(scene_);
-        const kokage::GroundGrid grid = kokage::make_ground_grid(scene_);
+        const GroundCells ground = make_ground_cells(scene_);
         LightMapFieldOptions maps;
         maps.maps = options_.maps > 0 ? options_.maps : kDefaultMaps;
         maps.bands = options_.bands;
-        LightMapField field(queries, grid, *tree_, maps, progress);
+        LightMapField field(queries, ground, *tree_, maps, progress);
         field.update(solution.radiance, {});
         solution.light_maps = field.export_maps(cell_means(field.maps().directions(), environment.remainder));
     }

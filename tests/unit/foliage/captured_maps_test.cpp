@@ -114,7 +114,7 @@ TEST(CapturedMaps, SeeTheGroundsCells) {
     test::add_rectangle(scene, {-1, 1, -1}, {2, 0, 0}, {0, 0, 2});
     scene.ground = Ground{0, glm::vec3(0.3f)};
     const RayQueries queries(scene);
-    const GroundGrid ground = make_ground_grid(scene);
+    const GroundCells ground = make_ground_cells(scene);
     const CapturedMaps maps(queries, ground, place_at({0, 0.5f, 0}), 4, 200, silent_progress());
     MapCoefficients map(1, 4);
     maps.add_surfaces(uniform_sides(1, glm::vec3(0), glm::vec3(0)), std::vector<glm::vec3>(ground.size(), glm::vec3(1)),

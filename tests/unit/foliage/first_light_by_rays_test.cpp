@@ -19,7 +19,7 @@ PatchScene leaf_at(const glm::vec3& centre) {
 
 FirstLight first_light(const PatchScene& scene, const Environment& environment, int rays = kRays) {
     const RayQueries queries(scene);
-    return FirstLightByRays(queries, make_ground_grid(scene), rays, 1, silent_progress())
+    return FirstLightByRays(queries, make_ground_cells(scene), rays, 1, silent_progress())
         .of(environment, silent_progress());
 }
 
@@ -72,7 +72,7 @@ TEST(FirstLightByRays, KnowsSkyGroundAndPatchesApart) {
     scene.ground = Ground{0, glm::vec3(0.5f)};
     test::add_rectangle(scene, {0, 2, -1000}, {1000, 0, 0}, {0, 0, 2000}); // hides the sky's half with x > 0, nearly
     const RayQueries queries(scene);
-    const GroundGrid grid = make_ground_grid(scene);
+    const GroundCells grid = make_ground_cells(scene);
     FirstLightByRays rays(queries, grid, 1024, 1, silent_progress());
     const FirstLight light = rays.of(test::constant_environment(glm::vec3(1)), silent_progress());
     std::vector<float> front, back;

@@ -7,8 +7,9 @@
 namespace kokage {
 
 /// The ground plane cut into square cells of one radiance each, around and under the tree, plus one cell for all that
-/// is farther away (and in no shade). Without a ground there are no cells.
-struct GroundGrid {
+/// is farther away (and in no shade). Without a ground there are no cells. In metres, for methods that trace
+/// rays; bundles have a finer grid of their own, in scaled units (bundles::GroundGrid).
+struct GroundCells {
     int side = 0;       ///< cells along x and along z; 0 without a ground
     glm::vec2 low{0.f}; ///< x and z of the corner of cell 0
     float cell_m = 0;   ///< edge of a cell
@@ -23,6 +24,6 @@ struct GroundGrid {
 };
 
 /// A grid that reaches beyond the scene's footprint by the scene's height, where most of the shade falls.
-GroundGrid make_ground_grid(const PatchScene& scene, int side = 16);
+GroundCells make_ground_cells(const PatchScene& scene, int side = 16);
 
 } // namespace kokage
