@@ -2,6 +2,7 @@
 #include "foliage/method.h"
 #include "tests/unit/foliage/small_trees.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -196,12 +197,34 @@ TEST(BundlesStress, ManyTinyLeavesAndAFewHuge) {
     expect_finite(shade(tree, test::sky_and_sun()));
 }
 
-TEST(BundlesStress, AQuarterOfAMillionLeaves) {
+// Above 2^20 faces, which leave fewer than 12 bits of a raster's keys for depth.
+TEST(BundlesStress, OverAMillionLeaves) {
+    constexpr std::uint32_t kLeaves = 1100000;
     test::SmallTree tree;
-    tree.scene = test::random_crown(250000, 6, test::realistic_leaf());
+    tree.scene = test::random_crown(kLeaves, 6, test::realistic_leaf());
     const Solution solution = shade(tree, test::sky_and_sun(), 12);
     expect_finite(solution);
-    EXPECT_NEAR((solution.energy_absorbed + solution.energy_escaped) / solution.energy_in, 1, 0.05);
+    EXPECT_NEAR((solution.energy_absorbed + solution.energy_escaped) / solution.energy_in, 1, 0.02);
+    EXPECT_LT(solution.transport_bytes, 150ull * kLeaves);
+    EXPECT_LT(*solution.estimated_error, 0.2);
+    EXPECT_LT(solution.residuals.back(), 0.02);
+    // As bright as a crown of the same shape and leaf area with a hundredth of the leaves: inside, light is the same.
+    tree.scene = test::random_crown(kLeaves / 100, 6, test::realistic_leaf());
+    const double expected = mean(shade(tree, test::sky_and_sun(), 40));
+    EXPECT_NEAR(mean(solution), expected, 0.02 * expected);
+}
+
+// Rays for a whole crown: all leaves are tiny beside one wide card.
+TEST(BundlesStress, AHundredThousandTinyLeavesBesideAWideCard) {
+    test::SmallTree tree;
+    tree.scene = test::random_crown(100000, 3, test::grey_leaf(1));
+    test::add_rectangle(tree.scene, {-300, 0, -300}, {0, 0, 600}, {600, 0, 0});
+    const Solution furnace = shade(tree, test::constant_environment(glm::vec3(1)), 4);
+    expect_finite(furnace);
+    EXPECT_NEAR(mean(furnace), 1, 1e-4);
+    EXPECT_TRUE(std::any_of(furnace.report.counts.begin(), furnace.report.counts.end(), [](const auto& count) {
+        return count.name == "leaves too small for lines" && count.value == 100000;
+    }));
 }
 
 } // namespace
