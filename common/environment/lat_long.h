@@ -5,6 +5,8 @@
 //        v = acos(y) / pi                 v=0  +--- +Y (all of the row) ---+
 //                                              |  -X    -Z    +X    +Z  -X |
 //        top row = +Y                     v=1  +--- -Y --------------------+
+//
+// Held against three.js itself by tests/unit/common/lat_long_three_test.cpp.
 #include "common/scene/image.h"
 #include "common/types.h"
 

@@ -1,37 +1,16 @@
 // Khronos' glTF validator finds no error in what we write.
+#include "tests/support/node.h"
 #include "tests/support/program_run.h"
 #include "tests/support/tree_files.h"
 #include "trees/read_tree.h"
 
-#include <cstdio>
-#include <gtest/gtest.h>
-#include <nlohmann/json.hpp>
-
 namespace kokage {
 namespace {
 
-/// Where npm put the validator: KOKAGE_NODE_MODULES, or tests/validate/node_modules; empty if nowhere.
-std::string node_modules() {
-    const char* named = std::getenv("KOKAGE_NODE_MODULES");
-    const std::filesystem::path folder = named && *named
-                                             ? std::filesystem::path(named)
-                                             : std::filesystem::path(KOKAGE_TESTS_FOLDER) / "validate" / "node_modules";
-    const bool there =
-        std::filesystem::exists(folder / "gltf-validator") && std::system("node --version >/dev/null 2>&1") == 0;
-    return there ? folder.string() : "";
-}
-
 nlohmann::json validate_files(const std::string& modules, const std::vector<std::filesystem::path>& files) {
-    std::string command = std::string("node '") + KOKAGE_TESTS_FOLDER + "/validate/validate.js' '" + modules + "'";
-    for (const std::filesystem::path& file : files)
-        command += " '" + file.string() + "'";
-    FILE* pipe = popen(command.c_str(), "r");
-    std::string output;
-    char block[4096];
-    while (const std::size_t count = std::fread(block, 1, sizeof block, pipe))
-        output.append(block, count);
-    EXPECT_EQ(pclose(pipe), 0);
-    return nlohmann::json::parse(output);
+    std::vector<std::string> arguments{modules};
+    arguments.insert(arguments.end(), files.begin(), files.end());
+    return run_node("validate.js", arguments);
 }
 
 void expect_valid(const std::string& modules, const std::vector<std::filesystem::path>& files) {
@@ -46,7 +25,7 @@ void expect_valid(const std::string& modules, const std::vector<std::filesystem:
 }
 
 TEST(Validator, FindsNoErrorInGrownTrees) {
-    const std::string modules = node_modules();
+    const std::string modules = node_modules_with("gltf-validator");
     if (modules.empty())
         GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
     TemporaryFolder folder;
@@ -59,7 +38,7 @@ TEST(Validator, FindsNoErrorInGrownTrees) {
 }
 
 TEST(Validator, FindsTheErrorInABrokenFile) {
-    const std::string modules = node_modules();
+    const std::string modules = node_modules_with("gltf-validator");
     if (modules.empty())
         GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
     TemporaryFolder folder;
@@ -68,7 +47,7 @@ TEST(Validator, FindsTheErrorInABrokenFile) {
 }
 
 TEST(Validator, FindsNoErrorInReexportedForeignTrees) {
-    const std::string modules = node_modules();
+    const std::string modules = node_modules_with("gltf-validator");
     if (modules.empty())
         GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
     const auto data = data_folder();
