@@ -51,7 +51,7 @@ class BundlesTransport : public Transport {
     };
 
     void draw(const BundleEffort& effort, Progress& progress);
-    void trace_small_leaves(Progress& progress);
+    void trace_small_leaves(const BundleTransport& earlier, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
     void fill(Solution& solution, const Lit& lit) const;
@@ -82,9 +82,10 @@ class BundlesTransport : public Transport {
 void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
     Stopwatch watch;
     effort_ = effort;
+    const BundleTransport earlier = transport_.rays.empty() ? BundleTransport() : std::move(transport_);
     transport_ = trace_bundles(scene_, facets_, effort.lines, progress);
     pending_.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
-    trace_small_leaves(progress);
+    trace_small_leaves(earlier, progress);
     bounces_ = std::make_unique<BounceOperator>(scene_, transport_);
     if (!lights_)
         lights_ = std::make_unique<DrawnLights>(scene_, facets_, transport_.ground);
@@ -92,7 +93,7 @@ void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
     lights_->clear();
 }
 
-void BundlesTransport::trace_small_leaves(Progress& progress) {
+void BundlesTransport::trace_small_leaves(const BundleTransport& earlier, Progress& progress) {
     ray_lights_.reset();
     const std::vector<std::uint32_t> small = leaves_too_small_for_lines(scene_, facets_, effort_.lines);
     if (small.empty())
@@ -101,7 +102,7 @@ void BundlesTransport::trace_small_leaves(Progress& progress) {
     if (!rays_)
         rays_ = std::make_unique<Rays>(scene_);
     add_ray_links(rays_->queries, rays_->points, facets_, small, rays_a_side(effort_.lines), effort_.lines.seed,
-                  transport_, progress);
+                  earlier, transport_, progress);
     ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
     pending_.stages.push_back({"rays from small leaves", watch.cpu(), watch.wall()});
 }

@@ -27,10 +27,11 @@ class RayTracing {
                const std::optional<GroundGrid>& ground, const RayLinks& rays, std::uint64_t seed)
         : queries_(queries), points_(points), facets_(facets), ground_(ground), rays_(rays), seed_(seed) {}
 
-    /// Fills the four rows of a patch with sides, or kEnd + entry. False if no solid point was found.
-    bool look_around(std::uint32_t patch, std::span<std::uint32_t> seen) const {
+    /// Fills the four rows of a patch from ray `first` on with sides, or kEnd + entry. False if no solid point was
+    /// found.
+    bool look_around(std::uint32_t patch, std::uint32_t first, std::span<std::uint32_t> seen) const {
         for (std::uint32_t row = 0; row < 4; ++row)
-            for (std::uint32_t i = 0; i < rays_.rays_a_row; ++i) {
+            for (std::uint32_t i = first; i < rays_.rays_a_row; ++i) {
                 PathNumbers numbers(hash64(seed_ ^ hash64(4 * std::uint64_t(patch) + row)), i);
                 PatchPoint point;
                 if (!points_.sample(patch, numbers, point))
@@ -68,6 +69,25 @@ class RayTracing {
     const RayLinks& rays_;
     std::uint64_t seed_;
 };
+
+/// Copies what earlier rays of a patch saw to the start of its rows; returns their number, 0 if there are none.
+std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, std::uint32_t rays_a_row,
+                     std::span<std::uint32_t> seen) {
+    const RayLinks& rays = earlier.rays;
+    const auto found = std::lower_bound(rays.patches.begin(), rays.patches.end(), patch);
+    if (found == rays.patches.end() || *found != patch || rays.rays_a_row > rays_a_row)
+        return 0;
+    for (std::uint32_t row = 0; row < 4; ++row) {
+        const Side side = 2 * patch + row / 2;
+        const std::span<const std::uint16_t> ends = rays.ends_of(4 * std::size_t(found - rays.patches.begin()) + row);
+        const std::size_t met = rays.rays_a_row - ends.size();
+        const auto from =
+            earlier.links.neighbours.begin() + (row % 2 == 0 ? earlier.links.begin[side] : earlier.links.middle[side]);
+        const auto to = std::copy_n(from, met, seen.begin() + std::ptrdiff_t(row) * rays_a_row);
+        std::transform(ends.begin(), ends.end(), to, [](std::uint16_t end) { return kEnd + end; });
+    }
+    return rays.rays_a_row;
+}
 
 /// Sorts what the rays of one patch saw into rows of sides and rows of ends.
 void append(std::uint32_t patch, std::span<const std::uint32_t> seen, RayLinks& rays, Met& met) {
@@ -161,7 +181,7 @@ std::uint32_t rays_a_side(const BundleSettings& settings) {
 
 void add_ray_links(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
                    const std::vector<std::uint32_t>& patches, std::uint32_t rays_a_side, std::uint64_t seed,
-                   BundleTransport& transport, Progress& progress) {
+                   const BundleTransport& earlier, BundleTransport& transport, Progress& progress) {
     RayLinks& rays = transport.rays;
     rays = {};
     if (patches.empty())
@@ -181,9 +201,11 @@ void add_ray_links(const RayQueries& queries, const PatchPoints& points, const F
         solid.resize(count);
         parallel_blocks(count, kPatchBlock, [&](std::size_t from, std::size_t to) {
             progress.throw_if_stopped();
-            for (std::size_t i = from; i < to; ++i)
-                solid[i] =
-                    tracing.look_around(patches[first + i], std::span(seen).subspan(i * rays_a_patch, rays_a_patch));
+            for (std::size_t i = from; i < to; ++i) {
+                const std::uint32_t patch = patches[first + i];
+                const std::span<std::uint32_t> rows = std::span(seen).subspan(i * rays_a_patch, rays_a_patch);
+                solid[i] = tracing.look_around(patch, recall(patch, earlier, rays.rays_a_row, rows), rows);
+            }
             progress.advance(to - from);
         });
         for (std::size_t i = 0; i < count; ++i)

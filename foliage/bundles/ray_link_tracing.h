@@ -17,8 +17,10 @@ std::uint32_t rays_a_side(const BundleSettings& settings);
 
 /// Traces `patches` (ascending) and puts what they meet into their rows of transport.links; sets transport.rays.
 /// Patches without solid area keep what lines found. The result does not depend on the number of threads.
+/// `earlier`: a transport of the same scene and seed with fewer rays, which are then not traced again (empty: none);
+/// the result is the same.
 void add_ray_links(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
                    const std::vector<std::uint32_t>& patches, std::uint32_t rays_a_side, std::uint64_t seed,
-                   BundleTransport& transport, Progress& progress);
+                   const BundleTransport& earlier, BundleTransport& transport, Progress& progress);
 
 } // namespace kokage::bundles

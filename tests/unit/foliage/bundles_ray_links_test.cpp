@@ -169,7 +169,7 @@ struct Traced {
         const BundleSettings settings = settings_of(directions);
         transport = trace_bundles(scene, facets, settings, silent_progress());
         add_ray_links(RayQueries(scene), PatchPoints(scene), facets,
-                      leaves_too_small_for_lines(scene, facets, settings), rays, 1, transport, silent_progress());
+                      leaves_too_small_for_lines(scene, facets, settings), rays, 1, {}, transport, silent_progress());
     }
 };
 
@@ -314,6 +314,21 @@ TEST(BundlesRayLinks, ALoneTinyLeafNeedsNoRays) {
     const Solution solution = shade(lone, test::constant_environment(glm::vec3(2)), 20);
     EXPECT_EQ(count_of(solution, "leaves too small for lines"), 0u);
     EXPECT_NEAR(solution.radiance.front[0].r, 1, 1e-3);
+}
+
+TEST(BundlesRayLinks, MoreRaysGoOnWhereFewerEnded) {
+    PatchScene scene = mixed_ball(200, test::realistic_leaf()).scene;
+    scene.ground = Ground{0.8f};
+    const Traced fewer(scene, 24), fresh(scene, 80);
+    BundleTransport continued = trace_bundles(scene, fresh.facets, settings_of(16), silent_progress());
+    std::vector<std::uint32_t> patches = fresh.transport.rays.patches;
+    add_ray_links(RayQueries(scene), PatchPoints(scene), fresh.facets, patches, 80, 1, fewer.transport, continued,
+                  silent_progress());
+    EXPECT_EQ(continued.rays.ends, fresh.transport.rays.ends);
+    EXPECT_EQ(continued.rays.end_begin, fresh.transport.rays.end_begin);
+    EXPECT_EQ(continued.links.neighbours, fresh.transport.links.neighbours);
+    EXPECT_EQ(continued.links.middle, fresh.transport.links.middle);
+    EXPECT_NE(continued.rays.ends, fewer.transport.rays.ends);
 }
 
 /// MRE over the shrunken leaves and over all.
