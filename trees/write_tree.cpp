@@ -112,8 +112,8 @@ Image combined_texture(const TreeMaterial& material) {
                              : nullptr;
     const Image* alpha =
         material.alpha_texture && !material.alpha_texture->empty() ? material.alpha_texture.get() : nullptr;
-    if (color && !alpha)
-        return *color;
+    if (!alpha)
+        return color ? *color : Image();
     const int width = std::max(color ? color->width : 0, alpha->width),
               height = std::max(color ? color->height : 0, alpha->height);
     Image result(width, height, 4);

@@ -61,7 +61,7 @@ std::vector<double> side_errors(const std::vector<glm::vec3>& sides, const std::
 class ErrorColors {
   public:
     glm::vec3 operator()(double share) const {
-        const int x = int(std::clamp(share, 0.0, 1.0) * (legend_.width - 1) + 0.5);
+        const int x = int(std::lround(std::clamp(share, 0.0, 1.0) * (legend_.width - 1)));
         const float* color = legend_.at(x, 0);
         return {linear_from_srgb(color[0]), linear_from_srgb(color[1]), linear_from_srgb(color[2])};
     }
