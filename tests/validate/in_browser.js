@@ -69,6 +69,7 @@ async function inBrowser({ nodeModules, page, input = {}, files = {}, seconds = 
         '--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader', `--user-data-dir=${profile}`];
       browser = spawn(chromium, [...options, `http://127.0.0.1:${server.address().port}/${page}`], {
         stdio: 'ignore',
+        env: { ...process.env, TMPDIR: profile }, // what it leaves behind goes with its profile
         detached: true, // a process group of its own, so that it can be ended whole
       });
       browser.on('error', reject);

@@ -4,13 +4,11 @@
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
 #include "common/services/random.h"
+#include "tests/support/temporary_folder.h"
 
 #include <cmath>
-#include <filesystem>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
-namespace fs = std::filesystem;
 using namespace kokage;
 
 namespace {
@@ -41,9 +39,7 @@ void expect_sound(const Environment& environment, const EnvironmentReport& repor
 }
 
 TEST(EnvironmentStress, SixteenThousandPixelsWideFromAFile) {
-    std::string pattern = (fs::temp_directory_path() / "kokage-stress-XXXXXX").string();
-    ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-    const fs::path folder = pattern;
+    const TemporaryFolder folder;
     {
         Image image = noise(16384, 512, 0, 0, 1);
         for (int x : {16382, 16383, 0, 1, 2}) // a lamp on the seam
@@ -60,7 +56,6 @@ TEST(EnvironmentStress, SixteenThousandPixelsWideFromAFile) {
         EXPECT_NE(report.note.find("16384 x 512"), std::string::npos) << report.note;
         EXPECT_LT(environment.distant_lights[0].direction.x, -0.9f); // u = 0 is -X
     }
-    fs::remove_all(folder);
 }
 
 TEST(EnvironmentStress, AHundredThousandSparks) {

@@ -89,12 +89,7 @@ TEST(BundlesStress, ALeafWithoutAreaAlone) {
 
 TEST(BundlesStress, CoincidentAndEmptyLeavesAndBlackSkies) {
     test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::grey_leaf(1));
-    for (int copy = 0; copy < 20; ++copy) {
-        test::add_rectangle(tree.scene, {0, 2, 0}, {0.1f, 0, 0}, {0, 0, 0.1f}); // twenty in the same place
-        test::add_rectangle(tree.scene, {0, 2, 0}, {0, 0, 0}, {0, 0, 0.1f});    // without an area
-        tree.tree.leaves.push_back({{0, 2, 0}, -1});
-        tree.tree.leaves.push_back({{0, 2, 0}, 3});
-    }
+    test::add_coincident_and_empty_leaves(tree);
     expect_finite(shade(tree, test::sky_and_sun()));
     const Solution black = shade(tree, test::constant_environment(glm::vec3(0)));
     expect_finite(black);

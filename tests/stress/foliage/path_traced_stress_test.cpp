@@ -1,7 +1,7 @@
 // Odd scenes and lights: everything stays finite, and scale changes nothing.
 #include "foliage/accuracy.h"
 #include "foliage/path_traced.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/rooms.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -124,14 +124,7 @@ TEST(PathTracedStress, AlbedoOneInsideAClosedWhiteBox) {
     // Light gets in nowhere and is lost nowhere: roulette alone ends the paths.
     PatchScene scene;
     scene.optics = {{glm::vec3(1), glm::vec3(0)}};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-        for (const float sign : {-1.f, 1.f}) {
-            glm::vec3 corner(-1), u(0), v(0);
-            corner[axis] = sign;
-            u[(axis + 1) % 3] = 2;
-            v[(axis + 2) % 3] = 2;
-            test::add_rectangle(scene, corner, u, v);
-        }
+    test::add_box(scene, glm::vec3(0), 1);
     Environment environment = test::sky_and_sun();
     environment.point_lights.push_back({"lamp", {0.1f, 0.2f, 0.3f}, glm::vec3(1)});
     expect_finite(shade(scene, environment, 64));

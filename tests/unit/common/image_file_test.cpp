@@ -1,5 +1,6 @@
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
+#include "tests/support/temporary_folder.h"
 
 #include <array>
 #include <cmath>
@@ -8,7 +9,6 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <limits>
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 using namespace kokage;
@@ -39,13 +39,8 @@ constexpr std::array<unsigned char, 38> alpha_webp = {
 
 class ImageFileTest : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "kokage-image-file-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    fs::path folder;
+    TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
 };
 
 Image gradient(int width, int height, int channels) {

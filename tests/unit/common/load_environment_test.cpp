@@ -2,13 +2,13 @@
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
 #include "common/services/random.h"
+#include "tests/support/temporary_folder.h"
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <gtest/gtest.h>
 #include <limits>
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 using namespace kokage;
@@ -19,13 +19,8 @@ constexpr float nan_value = std::numeric_limits<float>::quiet_NaN(), infinite = 
 
 class LoadEnvironment : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "kokage-environment-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder); }
-    fs::path folder;
+    TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
 };
 
 Image smooth_image(int width, int height) {

@@ -1,11 +1,11 @@
 #include "common/services/error.h"
 #include "common/services/output_file.h"
+#include "tests/support/temporary_folder.h"
 
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
 #include <sstream>
-#include <unistd.h>
 
 namespace fs = std::filesystem;
 using namespace kokage;
@@ -14,22 +14,11 @@ namespace {
 
 class OutputFileTest : public ::testing::Test {
   protected:
-    void SetUp() override {
-        std::string pattern = (fs::temp_directory_path() / "kokage-output-file-XXXXXX").string();
-        ASSERT_NE(::mkdtemp(pattern.data()), nullptr);
-        folder = pattern;
-    }
-    void TearDown() override { fs::remove_all(folder); }
     std::size_t files() const {
         return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator{}));
     }
-    static std::string contents(const fs::path& path) {
-        std::ifstream in(path, std::ios::binary);
-        std::stringstream text;
-        text << in.rdbuf();
-        return text.str();
-    }
-    fs::path folder;
+    TemporaryFolder temporary;
+    const fs::path folder = temporary.path();
 };
 
 TEST_F(OutputFileTest, AppearsWholeOnCommitAndNotBefore) {
@@ -40,7 +29,7 @@ TEST_F(OutputFileTest, AppearsWholeOnCommitAndNotBefore) {
     EXPECT_EQ(file.temporary_path().parent_path(), folder);
     file.write(" whole");
     file.commit();
-    EXPECT_EQ(contents(folder / "a.txt"), "half whole");
+    EXPECT_EQ(read_text(folder / "a.txt"), "half whole");
     EXPECT_EQ(files(), 1u);
 }
 
@@ -52,7 +41,7 @@ TEST_F(OutputFileTest, LeavesWhatWasThereWhenStopped) {
         throw Stopped();
     } catch (const Stopped&) {
     }
-    EXPECT_EQ(contents(folder / "a.txt"), "before");
+    EXPECT_EQ(read_text(folder / "a.txt"), "before");
     EXPECT_EQ(files(), 1u);
 }
 
@@ -60,7 +49,7 @@ TEST_F(OutputFileTest, ReplacesAndKeepsPermissions) {
     write_file(folder / "a.txt", "before");
     fs::permissions(folder / "a.txt", fs::perms::owner_read | fs::perms::owner_write);
     write_file(folder / "a.txt", "after");
-    EXPECT_EQ(contents(folder / "a.txt"), "after");
+    EXPECT_EQ(read_text(folder / "a.txt"), "after");
     EXPECT_EQ(fs::status(folder / "a.txt").permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
@@ -69,7 +58,7 @@ TEST_F(OutputFileTest, FollowsLinks) {
     fs::create_symlink("real.txt", folder / "link.txt");
     write_file(folder / "link.txt", "after");
     EXPECT_TRUE(fs::is_symlink(folder / "link.txt"));
-    EXPECT_EQ(contents(folder / "real.txt"), "after");
+    EXPECT_EQ(read_text(folder / "real.txt"), "after");
     EXPECT_EQ(files(), 2u);
 }
 
@@ -84,7 +73,7 @@ TEST_F(OutputFileTest, TwoWritersOfOnePathDoNotDisturbEachOther) {
     second.write("second");
     first.commit();
     second.commit();
-    EXPECT_EQ(contents(folder / "a.txt"), "second");
+    EXPECT_EQ(read_text(folder / "a.txt"), "second");
 }
 
 TEST_F(OutputFileTest, RefusesFoldersAndMissingFolders) {
@@ -110,7 +99,7 @@ TEST_F(OutputFileTest, RelativeNamesGoToTheCurrentFolder) {
     fs::current_path(folder);
     write_file("a.txt", "here");
     fs::current_path(before);
-    EXPECT_EQ(contents(folder / "a.txt"), "here");
+    EXPECT_EQ(read_text(folder / "a.txt"), "here");
 }
 
 } // namespace

@@ -110,9 +110,7 @@ TEST_P(LightMapsGather, NothingIsFine) {
 
 TEST(LightMaps, GroundSendsLightUp) {
     test::SmallTree small = test::ball_on_a_skeleton(300, 1, test::realistic_leaf());
-    Environment upper = test::sky_and_sun();
-    for (int y = 16; y < 32; ++y)
-        std::fill(upper.remainder.at(0, y), upper.remainder.at(0, y) + 3 * 64, 0.f);
+    const Environment upper = test::upper_sky_and_sun();
     const Solution without = shade(small, upper);
     small.scene.ground = Ground{0, glm::vec3(0.5f)};
     const Solution with = shade(small, upper);

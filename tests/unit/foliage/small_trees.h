@@ -64,6 +64,17 @@ inline SmallTree ball_on_a_skeleton(std::uint32_t leaves, float area_index, cons
     return result;
 }
 
+/// Adds leaves that no tree should have: twenty in the same place, twenty without an area; half of all without a
+/// branch.
+inline void add_coincident_and_empty_leaves(SmallTree& small) {
+    for (int copy = 0; copy < 20; ++copy) {
+        add_rectangle(small.scene, {0, 2, 0}, {0.1f, 0, 0}, {0, 0, 0.1f});
+        add_rectangle(small.scene, {0, 2, 0}, {0, 0, 0}, {0, 0, 0.1f});
+        small.tree.leaves.push_back({{0, 2, 0}, -1});
+        small.tree.leaves.push_back({{0, 2, 0}, 3});
+    }
+}
+
 /// A blue sky that is brighter above, and a sun of 0.27 degrees.
 inline Environment sky_and_sun() {
     Environment environment;
@@ -81,6 +92,14 @@ inline Environment sky_and_sun() {
     sun.half_angle = 0.0047f;
     sun.irradiance = {10, 9, 8};
     environment.distant_lights.push_back(sun);
+    return environment;
+}
+
+/// The same light from above the horizon alone.
+inline Environment upper_sky_and_sun() {
+    Environment environment = sky_and_sun();
+    for (int y = 16; y < 32; ++y)
+        std::fill(environment.remainder.at(0, y), environment.remainder.at(0, y) + 3 * 64, 0.f);
     return environment;
 }
 
