@@ -128,7 +128,7 @@ std::string text_of(const TreeDescription& d) {
         char label[24];
         std::snprintf(label, sizeof label, "  order %-4d ", number);
         text += label + counted(order.branches, "branch", "branches") + ", " + counted(order.leaves, "leaf", "leaves");
-        if (order.leaves > 0)
+        if (order.bearing < order.branches && order.leaves > 0)
             text += " on " + count_text(order.bearing) + " of them";
         text += "\n";
     }

@@ -81,7 +81,7 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
     if (whole.skipped_values > 0)
         std::printf("not finite, in no figure: %s\n", counted(whole.skipped_values, "value", "values").c_str());
-    const char* shows = "a pixel's largest difference of a channel";
+    const char* shows = "largest difference of each pixel's channels";
     const std::string legend = error_legend_text(double(whole.map_scale), 1, "");
     if (!options.error_map.empty()) {
         save_image(options.error_map, whole.map, {.png_encoding = PngEncoding::as_is});
@@ -111,7 +111,7 @@ void compare_trees(const CompareOptions& options, const CommandContext& context)
     std::printf("bias                  %+.4g %%\n", 100 * c.accuracy.bias);
     std::printf("largest error         %.4g %%, of leaf %zu\n", 100 * c.largest, c.largest_leaf);
     const WritingFiles writing;
-    const char* shows = "a leaf side's mean relative error of a channel";
+    const char* shows = "relative error of each leaf side";
     const std::string legend = error_legend_text(c.map_scale, 100, " %");
     if (!options.error_map.empty()) {
         save_image(options.error_map, c.map, {.png_encoding = PngEncoding::as_is});

@@ -56,6 +56,7 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
         if (patch_options.ground)
             for (const std::string& hidden : drop_hidden_lights(s.environment, *patch_options.ground))
                 s.warnings.push_back(hidden);
+        s.environment.description += added_lights_text(options.surroundings, s.environment);
         PatchScene scene = make_patches(s.tree, patch_options, &s.origins);
         override_optics(options, scene);
         return scene;

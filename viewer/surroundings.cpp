@@ -54,15 +54,6 @@ Environment gradient(const std::string& values) {
     return gradient_environment(color(0), color(3), color(6));
 }
 
-/// ", with the lights sun:1,2,3, point:4,5,6,7 and 3 more"; empty without any.
-std::string added_lights_text(const std::vector<std::string>& lights) {
-    constexpr std::size_t kNamed = 4;
-    std::string text = lights.empty() ? "" : lights.size() == 1 ? ", with the light " : ", with the lights ";
-    for (std::size_t i = 0; i < std::min(lights.size(), kNamed); ++i)
-        text += (i == 0 ? "" : " + ") + lights[i];
-    return lights.size() > kNamed ? text + " and " + count_text(lights.size() - kNamed) + " more" : text;
-}
-
 /// What needs no file, lights left out. Empty for a file.
 std::optional<Environment> made_environment(const Surroundings& surroundings) {
     std::string values;
@@ -159,7 +150,6 @@ Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, 
     Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
     for (const std::string& light : s.lights)
         add_light(environment, light);
-    environment.description += added_lights_text(s.lights);
     for (PointLight& light : environment.point_lights)
         light.position = glm::vec3(glm::dvec3(light.position) - origin);
     return environment;
@@ -182,6 +172,22 @@ std::vector<std::string> drop_hidden_lights(Environment& environment, const Grou
         return hidden;
     });
     return dropped;
+}
+
+std::string added_lights_text(const Surroundings& s, const Environment& environment) {
+    constexpr std::size_t kNamed = 4;
+    const auto named = [](const std::string& name) {
+        return [&name](const auto& light) { return light.name == name; };
+    };
+    std::vector<std::string> there;
+    for (const std::string& light : s.lights)
+        if (std::any_of(environment.distant_lights.begin(), environment.distant_lights.end(), named(light)) ||
+            std::any_of(environment.point_lights.begin(), environment.point_lights.end(), named(light)))
+            there.push_back(light);
+    std::string text = there.empty() ? "" : there.size() == 1 ? ", with the light " : ", with the lights ";
+    for (std::size_t i = 0; i < std::min(there.size(), kNamed); ++i)
+        text += (i == 0 ? "" : " + ") + there[i];
+    return there.size() > kNamed ? text + " and " + count_text(there.size() - kNamed) + " more" : text;
 }
 
 std::optional<std::string> night_warning(const Surroundings& s) {

@@ -26,7 +26,7 @@ void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
 /// Throws InputError, before any work, for values that can't be.
 void check_surroundings(const Surroundings& surroundings);
 
-/// Builds or loads it; its description names the lights that were added. Point lights are placed relative to `origin`
+/// Builds or loads it, lights added. Point lights are placed relative to `origin`
 /// (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
 
@@ -37,6 +37,9 @@ float foot_height(const Tree& tree);
 /// Takes out the lights that the ground hides from everything above it: distant ones wholly below the horizon, points
 /// under the ground. Gives back a sentence for each light that the user added; those found in an image go silently.
 std::vector<std::string> drop_hidden_lights(Environment& environment, const Ground& ground);
+
+/// ", with the lights sun:1,2,3 + point:4,5,6,7 and 3 more": those of the user that are (still) in the environment.
+std::string added_lights_text(const Surroundings& surroundings, const Environment& environment);
 
 /// What a user has to know about the night: empty unless the sky's sun is below the horizon.
 std::optional<std::string> night_warning(const Surroundings& surroundings);

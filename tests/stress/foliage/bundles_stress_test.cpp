@@ -1,6 +1,6 @@
 // Extremes that must stay finite, and where physics says so, stay the same.
 #include "foliage/method.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/solution_checks.h"
 
 #include <algorithm>
 #include <cmath>
@@ -18,40 +18,8 @@ Solution shade(const test::SmallTree& small, const Environment& environment, int
 }
 
 void expect_finite(const Solution& solution) {
-    for (const SideRadiance* sides : {&solution.radiance, &solution.indirect})
-        for (const std::vector<glm::vec3>* side : {&sides->front, &sides->back})
-            for (const glm::vec3& value : *side)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    ASSERT_TRUE(std::isfinite(value[c]));
-                    ASSERT_GE(value[c], 0);
-                }
-    for (const std::vector<float>* visibility : {&solution.sky_visibility_front, &solution.sky_visibility_back})
-        for (float share : *visibility) {
-            ASSERT_GE(share, 0);
-            ASSERT_LE(share, 1);
-        }
-    for (const glm::vec3& normal : solution.bent_normal)
-        ASSERT_TRUE(std::abs(glm::length(normal) - 1) < 1e-4f || normal == glm::vec3(0));
-    EXPECT_TRUE(std::isfinite(solution.energy_in + solution.energy_absorbed + solution.energy_escaped));
+    test::expect_finite(solution);
     ASSERT_TRUE(solution.estimated_error);
-    EXPECT_TRUE(std::isfinite(*solution.estimated_error));
-    for (double residual : solution.residuals)
-        EXPECT_TRUE(std::isfinite(residual));
-}
-
-test::SmallTree transformed(test::SmallTree small, float scale, const glm::vec3& shift) {
-    for (glm::vec3& position : small.scene.positions)
-        position = scale * position + shift;
-    if (small.scene.ground)
-        small.scene.ground->height_m = scale * small.scene.ground->height_m + shift.y;
-    return small;
-}
-
-double mean(const Solution& solution) {
-    double sum = 0;
-    for (std::size_t p = 0; p < solution.radiance.front.size(); ++p)
-        sum += double(solution.radiance.front[p].g) + solution.radiance.back[p].g;
-    return sum / double(2 * solution.radiance.front.size());
 }
 
 TEST(BundlesStress, NothingToShade) {
@@ -93,30 +61,30 @@ TEST(BundlesStress, CoincidentAndEmptyLeavesAndBlackSkies) {
     expect_finite(shade(tree, test::sky_and_sun()));
     const Solution black = shade(tree, test::constant_environment(glm::vec3(0)));
     expect_finite(black);
-    EXPECT_EQ(mean(black), 0);
+    EXPECT_EQ(test::mean(black), 0);
     EXPECT_EQ(black.energy_in, 0);
 }
 
 TEST(BundlesStress, TreesOfAnySizeAreLitAlike) {
     test::SmallTree tree = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
     tree.scene.ground = Ground{0.5f};
-    const double expected = mean(shade(tree, test::sky_and_sun()));
+    const double expected = test::mean(shade(tree, test::sky_and_sun()));
     for (float scale : {1e-6f, 1e-3f, 1e3f, 1e6f}) {
-        const Solution solution = shade(transformed(tree, scale, glm::vec3(0)), test::sky_and_sun());
+        const Solution solution = shade(test::transformed(tree, scale, glm::vec3(0)), test::sky_and_sun());
         expect_finite(solution);
-        EXPECT_NEAR(mean(solution), expected, 0.01 * expected) << scale;
+        EXPECT_NEAR(test::mean(solution), expected, 0.01 * expected) << scale;
     }
 }
 
 TEST(BundlesStress, FarFromTheOriginNothingBreaks) {
     const test::SmallTree tree = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
     expect_finite(
-        shade(transformed(tree, 1, {1e7f, 0, -1e7f}), test::sky_and_sun())); // positions are rounded to metres
+        shade(test::transformed(tree, 1, {1e7f, 0, -1e7f}), test::sky_and_sun())); // positions are rounded to metres
     // Where positions can still be told apart, light is the same.
-    const double expected = mean(shade(tree, test::sky_and_sun()));
-    const Solution big = shade(transformed(tree, 1e5f, {1e7f, 0, -1e7f}), test::sky_and_sun());
+    const double expected = test::mean(shade(tree, test::sky_and_sun()));
+    const Solution big = shade(test::transformed(tree, 1e5f, {1e7f, 0, -1e7f}), test::sky_and_sun());
     expect_finite(big);
-    EXPECT_NEAR(mean(big), expected, 0.01 * expected);
+    EXPECT_NEAR(test::mean(big), expected, 0.01 * expected);
 }
 
 TEST(BundlesStress, LightIsLinearOverSixtyPowersOfTen) {
@@ -128,13 +96,13 @@ TEST(BundlesStress, LightIsLinearOverSixtyPowersOfTen) {
         environment.remainder = test::constant_environment(glm::vec3(0)).remainder;
         environment.distant_lights[0].irradiance = glm::vec3(1);
         environment.point_lights = {{"lamp", {2, 2, 0}, glm::vec3(1)}};
-        const double expected = mean(shade(tree, environment));
+        const double expected = test::mean(shade(tree, environment));
         for (float power : {1e-30f, 1e-20f, 1e20f, 1e30f}) {
             environment.distant_lights[0].irradiance = glm::vec3(power);
             environment.point_lights[0].intensity = glm::vec3(power);
             const Solution solution = shade(tree, environment);
             expect_finite(solution);
-            EXPECT_NEAR(mean(solution) / double(power), expected, 0.002 * expected) << power;
+            EXPECT_NEAR(test::mean(solution) / double(power), expected, 0.002 * expected) << power;
         }
     }
 }
@@ -155,7 +123,7 @@ TEST(BundlesStress, NothingAbsorbs) {
     test::SmallTree tree = test::ball_on_a_skeleton(1000, 5, test::grey_leaf(1));
     const Solution furnace = shade(tree, test::constant_environment(glm::vec3(1)));
     expect_finite(furnace);
-    EXPECT_NEAR(mean(furnace), 1, 1e-3);
+    EXPECT_NEAR(test::mean(furnace), 1, 1e-3);
     tree.scene.ground = Ground{0.9f, glm::vec3(1)};
     expect_finite(shade(tree, test::sky_and_sun()));
 }
@@ -164,7 +132,7 @@ TEST(BundlesStress, AnOpaqueBlackTree) {
     const test::SmallTree tree = test::ball_on_a_skeleton(300, 3, {glm::vec3(0), glm::vec3(0)});
     const Solution solution = shade(tree, test::sky_and_sun());
     expect_finite(solution);
-    EXPECT_EQ(mean(solution), 0);
+    EXPECT_EQ(test::mean(solution), 0);
     EXPECT_NEAR(solution.energy_absorbed / solution.energy_in, 1, 0.03);
 }
 
@@ -205,8 +173,8 @@ TEST(BundlesStress, OverAMillionLeaves) {
     EXPECT_LT(solution.residuals.back(), 0.02);
     // As bright as a crown of the same shape and leaf area with a hundredth of the leaves: inside, light is the same.
     tree.scene = test::random_crown(kLeaves / 100, 6, test::realistic_leaf());
-    const double expected = mean(shade(tree, test::sky_and_sun(), 40));
-    EXPECT_NEAR(mean(solution), expected, 0.02 * expected);
+    const double expected = test::mean(shade(tree, test::sky_and_sun(), 40));
+    EXPECT_NEAR(test::mean(solution), expected, 0.02 * expected);
 }
 
 // Rays for a whole crown: all leaves are tiny beside one wide card.
@@ -216,7 +184,7 @@ TEST(BundlesStress, AHundredThousandTinyLeavesBesideAWideCard) {
     test::add_rectangle(tree.scene, {-300, 0, -300}, {0, 0, 600}, {600, 0, 0});
     const Solution furnace = shade(tree, test::constant_environment(glm::vec3(1)), 4);
     expect_finite(furnace);
-    EXPECT_NEAR(mean(furnace), 1, 1e-4);
+    EXPECT_NEAR(test::mean(furnace), 1, 1e-4);
     EXPECT_TRUE(std::any_of(furnace.report.counts.begin(), furnace.report.counts.end(), [](const auto& count) {
         return count.name == "leaves too small for lines" && count.value == 100000;
     }));

@@ -1,7 +1,7 @@
 // Extremes that must stay finite, and where physics says so, stay the same.
 #include "foliage/light_maps.h"
 #include "foliage/paper.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/solution_checks.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -20,53 +20,22 @@ class MapMethods : public testing::TestWithParam<Method> {
                     : make_light_maps_transport(small.scene, small.tree, options, silent_progress()))
             ->solve(environment, silent_progress());
     }
-    static void expect_finite(const Solution& solution) {
-        for (const SideRadiance* sides : {&solution.radiance, &solution.indirect})
-            for (const std::vector<glm::vec3>* side : {&sides->front, &sides->back})
-                for (const glm::vec3& value : *side)
-                    for (std::size_t c = 0; c < 3; ++c)
-                        ASSERT_TRUE(std::isfinite(value[c]));
-        EXPECT_TRUE(std::isfinite(solution.energy_in + solution.energy_absorbed + solution.energy_escaped));
-        for (double residual : solution.residuals)
-            EXPECT_TRUE(std::isfinite(residual));
-    }
 };
 INSTANTIATE_TEST_SUITE_P(Both, MapMethods, testing::Values(Method::paper, Method::light_maps));
 
-/// The same tree, scaled and moved.
-test::SmallTree transformed(test::SmallTree small, float scale, const glm::vec3& shift) {
-    for (glm::vec3& position : small.scene.positions)
-        position = scale * position + shift;
-    for (Leaf& leaf : small.tree.leaves)
-        leaf.centre = scale * leaf.centre + shift;
-    for (Branch& branch : small.tree.skeleton.branches)
-        for (Branch::Node& node : branch.nodes) {
-            node.position = scale * node.position + shift;
-            node.radius_m *= scale;
-        }
-    return small;
-}
-
-double mean(const Solution& solution) {
-    double sum = 0;
-    for (std::size_t p = 0; p < solution.radiance.front.size(); ++p)
-        sum += double(solution.radiance.front[p].g) + solution.radiance.back[p].g;
-    return sum / double(2 * solution.radiance.front.size());
-}
-
 TEST_P(MapMethods, TreesOfAnySizeAreLitAlike) {
     const test::SmallTree tree = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
-    const double expected = mean(shade(tree, test::sky_and_sun()));
+    const double expected = test::mean(shade(tree, test::sky_and_sun()));
     for (float scale : {1e-6f, 1e-3f, 1e3f, 1e6f}) {
-        const Solution solution = shade(transformed(tree, scale, glm::vec3(0)), test::sky_and_sun());
-        expect_finite(solution);
-        EXPECT_NEAR(mean(solution), expected, 0.02 * expected) << scale;
+        const Solution solution = shade(test::transformed(tree, scale, glm::vec3(0)), test::sky_and_sun());
+        test::expect_finite(solution);
+        EXPECT_NEAR(test::mean(solution), expected, 0.02 * expected) << scale;
     }
 }
 
 TEST_P(MapMethods, FarFromTheOriginNothingBreaks) {
     const test::SmallTree tree = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
-    expect_finite(shade(transformed(tree, 1, {1e7f, 0, -1e7f}), test::sky_and_sun()));
+    test::expect_finite(shade(test::transformed(tree, 1, {1e7f, 0, -1e7f}), test::sky_and_sun()));
 }
 
 TEST_P(MapMethods, LightIsLinearOverSixtyPowersOfTen) {
@@ -74,28 +43,28 @@ TEST_P(MapMethods, LightIsLinearOverSixtyPowersOfTen) {
     Environment environment = test::sky_and_sun();
     environment.remainder = test::constant_environment(glm::vec3(0)).remainder;
     environment.distant_lights[0].irradiance = glm::vec3(1);
-    const double expected = mean(shade(tree, environment));
+    const double expected = test::mean(shade(tree, environment));
     for (float power : {1e-30f, 1e30f}) {
         environment.distant_lights[0].irradiance = glm::vec3(power);
         const Solution solution = shade(tree, environment);
-        expect_finite(solution);
-        EXPECT_NEAR(mean(solution) / double(power), expected, 1e-4 * expected);
+        test::expect_finite(solution);
+        EXPECT_NEAR(test::mean(solution) / double(power), expected, 1e-4 * expected);
     }
 }
 
 TEST_P(MapMethods, AnyNumberOfBands) {
     const test::SmallTree tree = test::ball_on_a_skeleton(100, 2, test::bright_leaf());
     for (int bands : {1, 2, 3, 8, 20, 40})
-        expect_finite(shade(tree, test::sky_and_sun(), bands));
+        test::expect_finite(shade(tree, test::sky_and_sun(), bands));
 }
 
 TEST_P(MapMethods, CoincidentAndEmptyLeavesAndBlackSkies) {
     test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::grey_leaf(1));
     test::add_coincident_and_empty_leaves(tree);
-    expect_finite(shade(tree, test::sky_and_sun()));
+    test::expect_finite(shade(tree, test::sky_and_sun()));
     const Solution black = shade(tree, test::constant_environment(glm::vec3(0)));
-    expect_finite(black);
-    EXPECT_EQ(mean(black), 0);
+    test::expect_finite(black);
+    EXPECT_EQ(test::mean(black), 0);
 }
 
 TEST_P(MapMethods, ALampInsideALeafAndAtAMap) {
@@ -104,7 +73,7 @@ TEST_P(MapMethods, ALampInsideALeafAndAtAMap) {
     const Leaf& leaf = tree.tree.leaves[0];
     environment.point_lights = {{"at a leaf", leaf.centre, glm::vec3(1)},
                                 {"at a map", tree.tree.skeleton.branches[1].nodes[0].position, glm::vec3(1)}};
-    expect_finite(shade(tree, environment));
+    test::expect_finite(shade(tree, environment));
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "foliage/accuracy.h"
 #include "foliage/path_traced.h"
 #include "tests/unit/foliage/rooms.h"
+#include "tests/unit/foliage/solution_checks.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -16,28 +17,9 @@ Solution shade(const PatchScene& scene, const Environment& environment, int effo
     return make_path_traced_transport(scene, Tree{}, options, silent_progress())->solve(environment, silent_progress());
 }
 
-bool finite(const glm::vec3& v) {
-    return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
-}
-
 void expect_finite(const Solution& solution) {
-    for (const SideRadiance* radiance : {&solution.radiance, &solution.indirect})
-        for (const std::vector<glm::vec3>* side : {&radiance->front, &radiance->back})
-            for (const glm::vec3& value : *side)
-                ASSERT_TRUE(finite(value) && value.r >= 0 && value.g >= 0 && value.b >= 0);
-    for (const glm::vec3& direction : solution.bent_normal)
-        ASSERT_TRUE(finite(direction));
-    EXPECT_TRUE(std::isfinite(solution.energy_in) && std::isfinite(solution.energy_absorbed) &&
-                std::isfinite(solution.energy_escaped));
+    test::expect_finite(solution);
     ASSERT_TRUE(solution.estimated_error);
-    EXPECT_TRUE(std::isfinite(*solution.estimated_error));
-}
-
-double mean_green(const Solution& solution) {
-    double sum = 0;
-    for (std::size_t p = 0; p < solution.radiance.front.size(); ++p)
-        sum += 0.5 * double(solution.radiance.front[p].g + solution.radiance.back[p].g);
-    return sum / std::max<double>(1, double(solution.radiance.front.size()));
 }
 
 TEST(PathTracedStress, NoLeavesAtAll) {
@@ -66,14 +48,14 @@ TEST(PathTracedStress, CoincidentAndDegenerateLeaves) {
 
 TEST(PathTracedStress, ScaleAndPlaceChangeNothing) {
     const PatchScene scene = test::random_crown(200, 3.5f, test::bright_leaf());
-    const double expected = mean_green(shade(scene, test::sky_and_sun(), 128));
+    const double expected = test::mean(shade(scene, test::sky_and_sun(), 128));
     for (const float scale : {1e-6f / 3, 1e6f / 3}) {
         PatchScene scaled = scene;
         for (glm::vec3& position : scaled.positions)
             position *= scale;
         const Solution solution = shade(scaled, test::sky_and_sun(), 128);
         expect_finite(solution);
-        EXPECT_NEAR(mean_green(solution), expected, 0.005 * expected) << scale;
+        EXPECT_NEAR(test::mean(solution), expected, 0.005 * expected) << scale;
     }
     for (const float away : {1e3f, 1e7f}) { // at 1e7 m, float keeps one metre of the crown
         PatchScene moved = scene;
@@ -82,7 +64,7 @@ TEST(PathTracedStress, ScaleAndPlaceChangeNothing) {
         const Solution solution = shade(moved, test::sky_and_sun(), 128);
         expect_finite(solution);
         if (away < 1e4f) {
-            EXPECT_NEAR(mean_green(solution), expected, 0.02 * expected);
+            EXPECT_NEAR(test::mean(solution), expected, 0.02 * expected);
         }
     }
 }
@@ -96,7 +78,7 @@ TEST(PathTracedStress, LightsOfAnyStrength) {
         environment.distant_lights[0].irradiance = glm::vec3(power);
         const Solution solution = shade(scene, environment, 16);
         expect_finite(solution);
-        const double relative = mean_green(solution) / double(power);
+        const double relative = test::mean(solution) / double(power);
         first = first > 0 ? first : relative;
         EXPECT_NEAR(relative / first, 1, 1e-4) << power;
     }
@@ -112,11 +94,11 @@ TEST(PathTracedStress, BlackEnvironmentAndBlackLeaves) {
     const Solution dark =
         shade(test::random_crown(50, 3, test::bright_leaf()), test::constant_environment(glm::vec3(0)), 0);
     expect_finite(dark);
-    EXPECT_EQ(mean_green(dark), 0);
+    EXPECT_EQ(test::mean(dark), 0);
     EXPECT_EQ(*dark.estimated_error, 0);
     const Solution black = shade(test::random_crown(50, 3, Optics{}), test::sky_and_sun(), 8);
     expect_finite(black);
-    EXPECT_EQ(mean_green(black), 0);
+    EXPECT_EQ(test::mean(black), 0);
     EXPECT_GT(black.energy_absorbed, 0);
 }
 
@@ -143,7 +125,7 @@ TEST(PathTracedStress, ImagesOfOnePixelAndOfSixteenThousand) {
 TEST(PathTracedStress, TwoHundredThousandLeaves) {
     const Solution solution = shade(test::random_crown(200000, 3.5f, test::realistic_leaf()), test::sky_and_sun(), 2);
     expect_finite(solution);
-    EXPECT_GT(mean_green(solution), 0.05);
+    EXPECT_GT(test::mean(solution), 0.05);
     EXPECT_NEAR((solution.energy_absorbed + solution.energy_escaped) / solution.energy_in, 1, 0.05);
 }
 

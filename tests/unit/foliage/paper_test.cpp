@@ -3,7 +3,7 @@
 #include "foliage/map_reading.h"
 #include "foliage/paper.h"
 #include "foliage/patch_geometry.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/solution_checks.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -21,14 +21,6 @@ Solution shade(const test::SmallTree& small, const Environment& environment,
                const ShadingOptions& options = paper_options()) {
     return make_paper_transport(small.scene, small.tree, options, silent_progress())
         ->solve(environment, silent_progress());
-}
-
-void expect_all_finite(const Solution& solution) {
-    for (const SideRadiance* sides : {&solution.radiance, &solution.indirect})
-        for (const std::vector<glm::vec3>* side : {&sides->front, &sides->back})
-            for (const glm::vec3& value : *side)
-                for (std::size_t c = 0; c < 3; ++c)
-                    ASSERT_TRUE(std::isfinite(value[c]));
 }
 
 std::uint64_t count_of(const Solution& solution, const std::string& name) {
@@ -177,7 +169,7 @@ TEST(Paper, NothingAndOneLeafAndNoBranchingAreFine) {
     test::add_rectangle(one.scene, {0, 1, 0}, {0.1f, 0, 0}, {0, 0, 0.1f});
     one.tree.leaves = {{{0.05f, 1, 0.05f}, -1}}; // unknown branch: the only map stands exactly at the leaf
     const Solution lone = shade(one, test::sky_and_sun());
-    expect_all_finite(lone);
+    test::expect_finite(lone);
     EXPECT_GT(lone.radiance.front[0].g, 0);
     EXPECT_TRUE(std::any_of(lone.report.warnings.begin(), lone.report.warnings.end(), [](const std::string& text) {
         return text.find("no branching points") != std::string::npos;
@@ -196,7 +188,7 @@ TEST(Paper, GroundLightsTheCrownFromBelow) {
         sum_with += with.radiance.front[p].g;
     }
     EXPECT_GT(sum_with, 1.1 * sum_without);
-    expect_all_finite(with);
+    test::expect_finite(with);
 }
 
 TEST(Paper, RefusesSettingsOutOfRange) {

@@ -186,6 +186,7 @@ TEST(Shade, LightsThatTheGroundHidesAreLeftOutAndSaid) {
     EXPECT_NE(std::string(hidden["warnings"][0]).find("'directional:10,-20,4' is below the horizon"),
               std::string::npos);
     EXPECT_NE(std::string(hidden["warnings"][1]).find("'point:1,-2,1,5' is under the ground"), std::string::npos);
+    EXPECT_EQ(hidden["inputs"]["environment"]["description"], plain["inputs"]["environment"]["description"]);
     EXPECT_EQ(hidden["energy"], plain["energy"]) << "they light nothing";
     EXPECT_EQ(hidden["inputs"]["environment"]["lights"], plain["inputs"]["environment"]["lights"]);
     words.push_back("--no-ground");
