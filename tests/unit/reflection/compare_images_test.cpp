@@ -1,5 +1,6 @@
 #include "common/services/error.h"
 #include "common/services/random.h"
+#include "common/types.h"
 #include "reflection/compare_images.h"
 
 #include <cmath>
@@ -85,6 +86,22 @@ TEST(CompareImages, RefusesDifferentShapesByName) {
         EXPECT_NE(std::string(error.what()).find("2 x 3"), std::string::npos);
     }
     EXPECT_THROW(compare_images(Image(), Image()), InputError);
+}
+
+TEST(ErrorLegend, NamesTheErrorsOfItsColors) {
+    EXPECT_EQ(error_legend_text(0.2, 100, " %"),
+              "black 0, violet 5 %, red-purple 10 %, orange 15 %, pale yellow 20 % and above");
+    EXPECT_EQ(error_legend_text(0, 1, ""), "all black: no difference");
+    // The colours are what the words say.
+    const Image legend = error_legend(5, 1);
+    const auto color = [&](int quarter) {
+        return glm::vec3(legend.at(quarter, 0)[0], legend.at(quarter, 0)[1], legend.at(quarter, 0)[2]);
+    };
+    EXPECT_LT(luminance(color(0)), 0.02f);
+    EXPECT_TRUE(color(1).b > color(1).r && color(1).r > color(1).g) << "violet";
+    EXPECT_TRUE(color(2).r > color(2).b && color(2).b > color(2).g) << "red-purple";
+    EXPECT_TRUE(color(3).r > color(3).g && color(3).g > color(3).b && color(3).r > 0.9f) << "orange";
+    EXPECT_TRUE(color(4).r > 0.9f && color(4).g > 0.9f && color(4).b > 0.5f) << "pale yellow";
 }
 
 } // namespace
