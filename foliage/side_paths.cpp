@@ -40,6 +40,14 @@ SidePaths::SidePaths(const PatchScene& scene, const PatchPoints& points, std::ui
     }
 }
 
+SidePaths::SidePaths(const PatchScene& scene, const PatchPoints& points, std::uint64_t seed,
+                     const std::vector<bool>& leaves)
+    : SidePaths(scene, points, seed, false) {
+    for (std::size_t p = 0; p < scene.patches.size(); ++p)
+        if (scene.patches[p].kind == PatchKind::leaf && !leaves[scene.patches[p].leaf])
+            share_[p] = 0;
+}
+
 std::uint32_t SidePaths::paths_of(std::size_t patch, std::uint32_t half_paths) const {
     if (!(share_[patch] > 0) || half_paths == 0)
         return 0;

@@ -29,6 +29,8 @@ class SidePaths {
   public:
     /// `with_bark` false leaves bark patches at zero paths. Points and what they refer to must outlive it.
     SidePaths(const PatchScene& scene, const PatchPoints& points, std::uint64_t seed, bool with_bark);
+    /// Of some leaves only: `leaves` says of each leaf whether it is traced.
+    SidePaths(const PatchScene& scene, const PatchPoints& points, std::uint64_t seed, const std::vector<bool>& leaves);
     /// Traces until every leaf side has `paths` of them (an odd number is rounded up), shared among the leaf's patches
     /// by area but at least 1 in each half; every bark side gets the full number. Throws Stopped when the user asks to
     /// stop.

@@ -3,9 +3,11 @@
 #include "common/services/stopwatch.h"
 #include "foliage/bundles/drawn_lights.h"
 #include "foliage/bundles/half_difference.h"
+#include "foliage/bundles/model_error.h"
 #include "foliage/bundles/outside_light.h"
 #include "foliage/bundles/ray_lights.h"
 #include "foliage/bundles/ray_link_tracing.h"
+#include "foliage/bundles/steps.h"
 #include "foliage/capture_directions.h"
 #include "foliage/divided_leaves.h"
 #include "foliage/light_map_field.h"
@@ -21,17 +23,22 @@ namespace {
 using namespace bundles;
 
 /// The sampling error that leaves room for what sampling can't mend.
-double sampling_error_for(double error, double uniform_side_error) {
-    return std::sqrt(std::max(error * error - uniform_side_error * uniform_side_error, 1e-8));
+double sampling_error_for(double error, double model_error) {
+    return std::sqrt(std::max(error * error - model_error * model_error, 1e-8));
 }
+
+/// A fifth of room for sampling: with less, the number of lines runs away.
+constexpr double kRoom = 1.2;
 
 class BundlesTransport : public Transport {
   public:
+    /// `tree`: null = no light maps; `reach`: null = never gives up.
     BundlesTransport(const PatchScene& scene, const BundleEffort& effort, const ShadingOptions& options, bool adaptive,
-                     Progress& progress, const Tree* tree)
-        : scene_(scene), tree_(tree), options_(options), adaptive_(adaptive), optics_(scene.optics) {
+                     Progress& progress, const Tree* tree, Reach* reach)
+        : scene_(scene), tree_(tree), options_(options), adaptive_(adaptive), reach_(reach), optics_(scene.optics) {
         Stopwatch watch;
         facets_ = make_facets(scene);
+        model_error_ = std::make_unique<ModelError>(scene, facets_, effort.uniform_side_error);
         pending_.stages.push_back({"facets", watch.cpu(), watch.wall()});
         draw(effort, progress);
     }
@@ -47,13 +54,14 @@ class BundlesTransport : public Transport {
         OutsideLight outside;
         SweepResult light;
         double sampling_error = 0;
-        std::vector<Rgb> irradiance;
+        std::vector<Rgb> irradiance, half_differences;
     };
 
     void draw(const BundleEffort& effort, Progress& progress);
     void trace_small_leaves(const BundleTransport& earlier, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
+    SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
     void fill(Solution& solution, const Lit& lit) const;
     void balance(Solution& solution, const Lit& lit) const;
     void add_host_data(const Environment& environment, Solution& solution, Progress& progress) const;
@@ -62,6 +70,7 @@ class BundlesTransport : public Transport {
     const Tree* tree_; ///< null: no light maps
     ShadingOptions options_;
     bool adaptive_;
+    Reach* reach_;
     std::vector<Optics> optics_;
     BundleEffort effort_;
     Facets facets_;
@@ -75,6 +84,7 @@ class BundlesTransport : public Transport {
     std::unique_ptr<RayLights> ray_lights_;
     std::unique_ptr<BounceOperator> bounces_;
     std::unique_ptr<DrawnLights> lights_;
+    std::unique_ptr<ModelError> model_error_;
     std::vector<Rgb> last_radiance_;
     WorkReport pending_; ///< of work since the last solution
 };
@@ -157,8 +167,8 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     std::vector<Rgb> difference(lit.light.radiance.size());
     for (std::size_t s = 0; s < difference.size(); ++s)
         difference[s] = Rgb::from(0.5f * (radiance[0][s].vec() - radiance[1][s].vec()));
-    lit.sampling_error = half_difference_error(scene_, lit.light.radiance,
-                                               bounces_->spread(lit.outside, optics_, difference, kSpreadOrders));
+    lit.half_differences = bounces_->spread(lit.outside, optics_, difference, kSpreadOrders);
+    lit.sampling_error = half_difference_error(scene_, lit.light.radiance, lit.half_differences);
     lit.irradiance = std::move(irradiance[0]);
     for (std::size_t s = 0; s < lit.irradiance.size(); ++s)
         lit.irradiance[s] = Rgb::from(0.5f * (lit.irradiance[s].vec() + irradiance[1][s].vec()));
@@ -204,6 +214,18 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
     }
 }
 
+SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environment, Progress& progress,
+                                      WorkReport& report) {
+    const LightAndMatter now{environment, optics_, options_.max_bounces};
+    if (const std::optional<SolutionError> known = model_error_->known(lit.sampling_error, now))
+        return *known;
+    Stopwatch watch;
+    const SolutionError error = model_error_->measure(lit.sampling_error, lit.light.radiance, lit.half_differences, now,
+                                                      options_.seed, transport_.fragments, progress, report);
+    report.stages.push_back({"check by paths", watch.cpu(), watch.wall()});
+    return error;
+}
+
 /// Bent normals, and light maps as [F] places them, showing the solved light.
 void BundlesTransport::add_host_data(const Environment& environment, Solution& solution, Progress& progress) const {
     Stopwatch watch;
@@ -228,17 +250,26 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     solution.report = std::move(pending_);
     pending_ = {};
     Lit lit;
+    SolutionError error;
     for (int attempt = 1;; ++attempt) {
         lit = light(environment, progress, solution.report);
-        const double ratio = lit.sampling_error / sampling_error_for(options_.error, effort_.uniform_side_error);
-        if (!adaptive_ || ratio <= 1.05 || attempt == kMostAttempts)
+        error = judge(lit, environment, progress, solution.report);
+        if (!adaptive_ || error.all <= 1.02 * options_.error)
+            break;
+        if (error.measured && kRoom * error.model > options_.error && reach_ && reach_->may_give_up) {
+            reach_->gave_up = true;
+            return solution;
+        }
+        const double ratio = lit.sampling_error / sampling_error_for(options_.error, error.model);
+        if (ratio <= 1.05 || attempt == kMostAttempts)
             break;
         const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
         // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
         const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
-        const BundleEffort more = effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), options_.seed);
+        BundleEffort more = effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), options_.seed);
         if (more.lines.sky_directions + more.lines.link_directions <= directions)
             break;
+        more.tolerance = effort_.tolerance;
         draw(more, progress);
         solution.report.append(pending_);
         pending_ = {};
@@ -246,11 +277,11 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     }
     fill(solution, lit);
     balance(solution, lit);
-    if (adaptive_ && lit.sampling_error > 1.05 * sampling_error_for(options_.error, effort_.uniform_side_error))
+    if (adaptive_ && error.all > 1.1 * options_.error)
         solution.report.warnings.push_back(
             "the asked error was not reached; ask for path-traced, or for a larger error");
     solution.residuals = lit.light.residuals;
-    solution.estimated_error = std::hypot(lit.sampling_error, effort_.uniform_side_error);
+    solution.estimated_error = error.all;
     if (options_.for_hosts)
         add_host_data(environment, solution, progress);
     last_radiance_ = std::move(lit.light.radiance);
@@ -290,28 +321,39 @@ class PathTracedInstead : public Transport {
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress) {
-    return std::make_unique<BundlesTransport>(scene, effort, options, false, progress, nullptr);
+    return std::make_unique<BundlesTransport>(scene, effort, options, false, progress, nullptr, nullptr);
 }
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree& tree,
                                                   const ShadingOptions& options, Progress& progress) {
     const bool adaptive = options.effort == 0;
-    auto make = [&](const PatchScene& patches, double uniform_side_error) -> std::unique_ptr<Transport> {
+    // `tree` and `scene` outlive the transport, `options` may not.
+    auto make = [&tree, options, adaptive](const PatchScene& patches, double uniform_side_error, Reach& reach,
+                                           Progress& stop) -> std::unique_ptr<Transport> {
         const double sampling_error = sampling_error_for(options.error, uniform_side_error);
         BundleEffort effort =
             effort_of_directions(adaptive ? directions_for_error(sampling_error) : options.effort, options.seed);
         effort.uniform_side_error = uniform_side_error;
         effort.tolerance = std::min(effort.tolerance, 0.04 * options.error);
-        return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, progress, &tree);
+        return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, stop, &tree, &reach);
     };
-    // A fifth of room for sampling: with less, the number of lines runs away.
-    constexpr double kRoom = 1.2;
-    if (!adaptive || options.error >= kRoom * kUniformSideError)
-        return make(scene, kUniformSideError);
+    auto whole = [make, &scene](Reach& reach, Progress& stop) { return make(scene, kUniformSideError, reach, stop); };
+    if (!adaptive)
+        return make_steps({whole}, progress);
+    auto divided = [make, &scene, &tree](Reach& reach, Progress& stop) {
+        return make_divided_transport(
+            scene, tree, 1, [&](const PatchScene& parts) { return make(parts, kUniformSideError / 2, reach, stop); });
+    };
+    auto paths = [&scene, &tree, options](Reach&, Progress& stop) -> std::unique_ptr<Transport> {
+        return std::make_unique<PathTracedInstead>(make_path_traced_transport(scene, tree, options, stop));
+    };
+    std::vector<StepMaker> steps; // those that are out of reach for any crown are left out
+    if (options.error >= kRoom * kUniformSideError)
+        steps.emplace_back(whole);
     if (options.error >= kRoom * kUniformSideError / 2 && can_divide_leaves(scene, tree))
-        return make_divided_transport(scene, tree, 1,
-                                      [&](const PatchScene& divided) { return make(divided, kUniformSideError / 2); });
-    return std::make_unique<PathTracedInstead>(make_path_traced_transport(scene, tree, options, progress));
+        steps.emplace_back(divided);
+    steps.emplace_back(paths);
+    return make_steps(std::move(steps), progress);
 }
 
 } // namespace kokage

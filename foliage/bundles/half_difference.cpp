@@ -6,7 +6,6 @@
 #include <cmath>
 
 namespace kokage::bundles {
-namespace {
 
 std::vector<glm::vec3> leaf_sides(const PatchScene& scene, const std::vector<Rgb>& sides) {
     SideRadiance radiance;
@@ -18,8 +17,6 @@ std::vector<glm::vec3> leaf_sides(const PatchScene& scene, const std::vector<Rgb
     }
     return leaf_side_radiance(scene, radiance);
 }
-
-} // namespace
 
 double half_difference_error(const PatchScene& scene, const std::vector<Rgb>& mean,
                              const std::vector<Rgb>& half_differences) {

@@ -5,6 +5,9 @@
 
 namespace kokage::bundles {
 
+/// leaf_side_radiance() of values per side.
+std::vector<glm::vec3> leaf_sides(const PatchScene& scene, const std::vector<Rgb>& sides);
+
 /// Estimated MRE (DESIGN 3) of the mean of two estimates. `half_differences`: half of what they differ by, per side. It
 /// has the same distribution as the error of their mean when they are independent and alike, so nothing needs
 /// calibrating.
