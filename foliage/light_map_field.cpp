@@ -146,6 +146,7 @@ void LightMapField::average_curved() {
             for (std::size_t j = 0; j < count; ++j)
                 sums[j] += twice * harmonics[j];
         }
+        // There is at least one band. NOLINTNEXTLINE(clang-analyzer-core.DivideZero)
         curved_[p] = std::int32_t(mean_harmonics_.size() / count);
         for (double sum : sums)
             mean_harmonics_.push_back(float(sum / area));

@@ -177,6 +177,7 @@ class TubeBuilder {
         std::size_t a = 0, b = 0;
         while (a < n || b < m) {
             const bool step_below = b >= m || (a < n && float(a + 1) / float(n) <= float(b + 1) / float(m) + 1e-6f);
+            // A ring has at least one vertex. NOLINTNEXTLINE(clang-analyzer-core.DivideZero)
             const Mesh::VertexHandle low = lower[a % n], up = m == 0 ? upper[0] : upper[b % m];
             if (step_below) {
                 // At a tip every face gets the middle of its own side as the tip's place around.

@@ -55,9 +55,10 @@ std::shared_ptr<const Image> leaf_alpha(const glm::vec3&) {
     for (int y = 0; y < leaf_size; ++y)
         for (int x = 0; x < leaf_size; ++x) {
             int inside = 0;
-            for (int s = 0; s < 16; ++s)
-                inside += inside_leaf_shape({(float(x) + (float(s % 4) + 0.5f) / 4) / float(leaf_size),
-                                             (float(y) + (float(s / 4) + 0.5f) / 4) / float(leaf_size)});
+            for (int row = 0; row < 4; ++row)
+                for (int column = 0; column < 4; ++column)
+                    inside += inside_leaf_shape({(float(x) + (float(column) + 0.5f) / 4) / float(leaf_size),
+                                                 (float(y) + (float(row) + 0.5f) / 4) / float(leaf_size)});
             alpha->at(x, y)[0] = float(inside) / 16;
         }
     return alpha;
