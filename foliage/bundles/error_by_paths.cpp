@@ -74,61 +74,80 @@ Shown shown_by_halves(const JudgedSides& judged, const glm::dvec3& mean) {
     return shown;
 }
 
-/// A squared error and how well it is known.
-struct Square {
-    double value = 0, variance = 0;
-    double skew = 0; ///< by how much it may be too large, in all classes alike
+/// The squared error that paths tell of a class, and how well they know it.
+struct Told {
+    double square = 0;
+    double noise = 0; ///< variance of `square` that the paths' noise makes
+    double all = 0;   ///< with that of having few leaves, if the squared error is about `expected`
+    double skew = 0;  ///< by how much `square` may be too large, in all classes alike
 };
 
-/// What paths say of a class; the variance is that of means of independent values that spread about as widely as they
-/// are large.
-Square told_by_paths(const ClassSums& sum) {
+/// Variances are those of means of independent values that spread about as widely as they are large.
+Told told_by_paths(const ClassSums& sum, double expected) {
     // Few paths of which few are bright are skewed: the mean of |noise| is then larger than halves show, by up to this
     // share of its square.
     constexpr double kSkew = 0.3;
     const double all = sum.from_paths / sum.count, noise = sum.noise / sum.count;
-    const double independent = sum.count / 3, skewed = kSkew * noise * noise;
-    return {all * all - noise * noise,
-            4 / independent * (std::pow(all, 4) + std::pow(noise, 4)) + skewed * skewed + 1e-30, skewed};
+    const double noise2 = noise * noise, all2 = expected + noise2, independent = sum.count / 3;
+    Told told;
+    told.square = all * all - noise2;
+    told.skew = kSkew * noise2;
+    told.noise = 8 / independent * noise2 * noise2 + told.skew * told.skew + 1e-30;
+    told.all = 4 / independent * (all2 * all2 + noise2 * noise2) + told.skew * told.skew + 1e-30;
+    return told;
 }
 
-/// The error over all classes, and the part of its standard deviation that the classes' own variances make.
+/// The error over all classes, and the part of its standard deviation that noise makes.
 struct Together {
     double error = 0, deviation = 0;
 };
 
+/// Error over what halves show, squared: as all classes say, each weighted by how well it knows.
+struct Ratio {
+    double square = 1, skew = 0;
+};
+
+Ratio common_ratio(const Sums& sums, const Shown& shown) {
+    Ratio ratio;
+    for (int pass = 0; pass < 3; ++pass) { // weights need the ratio
+        double products = 0, squares = 0, skew = 0;
+        for (int k = 0; k < kClasses; ++k)
+            if (sums[k].count > 0 && shown.error[k] > 0) {
+                const double expected = shown.error[k] * shown.error[k];
+                const Told told = told_by_paths(sums[k], ratio.square * expected);
+                products += expected * told.square / told.all;
+                squares += expected * expected / told.all;
+                skew += expected * told.skew / told.all;
+            }
+        if (!(squares > 0))
+            return {0, 0};
+        ratio = {std::max(products / squares, 0.0), skew / squares};
+    }
+    return ratio;
+}
+
 Together put_together(const Sums& sums, const Shown& shown) {
-    // Error over what halves show, squared: as all classes say, each weighted by how well it knows.
-    double products = 0, squares = 0, skew = 0;
-    for (int k = 0; k < kClasses; ++k)
-        if (sums[k].count > 0 && shown.error[k] > 0) {
-            const Square told = told_by_paths(sums[k]);
-            const double expected = shown.error[k] * shown.error[k];
-            products += expected * told.value / told.variance;
-            squares += expected * expected / told.variance;
-            skew += expected * told.skew / told.variance;
-        }
-    const double ratio = squares > 0 ? std::max(products / squares, 0.0) : 0.0;
-    // A class is believed itself as far as it knows, and else is expected to follow that ratio.
-    constexpr double kLooseness = 0.7;
+    const Ratio ratio = common_ratio(sums, shown);
+    // A class is believed itself as far as noise lets it know, and else is expected to follow that ratio.
+    constexpr double kLooseness = 0.8;
     Together all;
     double variance = 0;
     for (int k = 0; k < kClasses; ++k) {
-        Square square{ratio * shown.error[k] * shown.error[k], 0, 0};
-        square.variance = std::pow(kLooseness * square.value, 2);
+        const double expected = ratio.square * shown.error[k] * shown.error[k];
+        double square = expected, square_variance = std::pow(kLooseness * expected, 2);
         if (sums[k].count > 0) {
-            const Square told = told_by_paths(sums[k]);
-            const double trust = square.variance / (square.variance + told.variance);
-            square = squares > 0 ? Square{square.value + trust * (told.value - square.value), trust * told.variance, 0}
-                                 : told;
+            const Told told = told_by_paths(sums[k], expected);
+            const double trust = shown.error[k] > 0 ? square_variance / (square_variance + told.noise + 1e-30) : 1.0;
+            square += trust * (told.square - expected);
+            square_variance = trust * told.noise;
         }
-        const double error = std::sqrt(std::max(square.value, 0.0));
+        const double error = std::sqrt(std::max(square, 0.0));
         all.error += shown.share[k] * error;
         if (error > 0)
-            variance += std::pow(shown.share[k] * 0.5 * std::sqrt(square.variance) / error, 2);
+            variance += std::pow(shown.share[k] * 0.5 * std::sqrt(square_variance) / error, 2);
     }
     // Half of what skew may do, as a share of the squared error, and half of that again for the error itself.
-    const double skewed = products > 0 ? 0.25 * skew / products * all.error : 0.0;
+    const double skewed = ratio.square > 0 ? 0.25 * ratio.skew / ratio.square * all.error : 0.0;
     all.deviation = std::sqrt(variance + skewed * skewed);
     return all;
 }

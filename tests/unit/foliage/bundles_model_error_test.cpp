@@ -1,0 +1,206 @@
+// The error that no number of lines mends: how it is measured, and what is done about it.
+#include "foliage/accuracy.h"
+#include "foliage/bundles/error_by_paths.h"
+#include "foliage/bundles/steps.h"
+#include "foliage/path_traced.h"
+#include "tests/unit/foliage/small_trees.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+#include <set>
+
+namespace kokage {
+namespace {
+
+using namespace bundles;
+
+double normal_number(Random& random) {
+    return std::sqrt(-2 * std::log(1 - random.uniform_double())) * std::cos(2 * kPiDouble * random.uniform_double());
+}
+
+/// Leaf sides of which everything is known.
+struct MadeUp {
+    JudgedSides judged;
+    TracedSides traced;
+    double error = 0;
+};
+
+/// `off`, `noise`, `shown`: relative standard deviations of the solution, of each half of the paths, and of what the
+/// lines show. Sides are the darker the more wrong and noisy.
+MadeUp make_up(double off, double noise, double shown, std::uint64_t seed) {
+    constexpr std::uint32_t kLeaves = 1000;
+    MadeUp result;
+    Random random(seed);
+    for (std::uint32_t side = 0; side < 2 * kLeaves; ++side) {
+        const double brightness = std::exp2(4 * random.uniform_double() - 2), darkness = 1 / std::sqrt(brightness);
+        const bool traced = side / 2 % 5 == 0;
+        if (traced && side % 2 == 0)
+            result.traced.leaves.push_back(side / 2);
+        const double wrong = off * darkness * normal_number(random), half = shown * darkness * normal_number(random),
+                     first = noise * darkness * normal_number(random),
+                     second = noise * darkness * normal_number(random);
+        result.judged.radiance.emplace_back(float(brightness * (1 + wrong)));
+        result.judged.half_differences.emplace_back(float(brightness * half));
+        result.error += std::abs(wrong) / (2 * kLeaves);
+        if (traced) {
+            result.traced.first.emplace_back(float(brightness * (1 + first)));
+            result.traced.second.emplace_back(float(brightness * (1 + second)));
+        }
+    }
+    return result;
+}
+
+TEST(BundlesErrorByPaths, IsFoundBeneathTheNoise) {
+    for (const auto& [off, noise, shown] : {std::tuple(0.05, 0.02, 0.05), {0.05, 0.1, 0.01}, {0.1, 0.2, 0.05}})
+        for (std::uint64_t seed : {1u, 2u, 3u}) {
+            SCOPED_TRACE(testing::Message() << off << ' ' << noise << ' ' << shown << ' ' << seed);
+            const MadeUp made = make_up(off, noise, shown, seed);
+            const MeasuredError found = error_beneath_noise(made.judged, made.traced);
+            EXPECT_NEAR(found.error, made.error, std::max(0.15, 2.5 * found.uncertainty) * made.error);
+            EXPECT_LT(found.uncertainty, 0.35);
+        }
+}
+
+TEST(BundlesErrorByPaths, KnowsWhenItDoesNotKnow) {
+    const MadeUp made = make_up(0.003, 0.5, 0.01, 1);
+    EXPECT_GT(error_beneath_noise(made.judged, made.traced).uncertainty, 0.5);
+}
+
+TEST(BundlesErrorByPaths, LeavesOfAllSizesAreMet) {
+    std::vector<double> areas(1000);
+    for (std::size_t i = 0; i < areas.size(); ++i)
+        areas[i] = i % 10 == 3 ? 0.001 : 1; // a tenth is tiny
+    const std::vector<std::uint32_t> leaves = sample_leaves(areas, 100, 7);
+    EXPECT_EQ(std::set<std::uint32_t>(leaves.begin(), leaves.end()).size(), 100u);
+    EXPECT_TRUE(std::is_sorted(leaves.begin(), leaves.end()));
+    EXPECT_EQ(std::count_if(leaves.begin(), leaves.end(), [](std::uint32_t leaf) { return leaf % 10 == 3; }), 10);
+    EXPECT_NE(leaves, sample_leaves(areas, 100, 8));
+    EXPECT_EQ(sample_leaves(areas, 1000, 7).size(), 1000u);
+    EXPECT_TRUE(sample_leaves({}, 10, 7).empty());
+}
+
+/// Small leaves stand on a large card, half of which lies in the shade of a dark roof: one radiance for the whole card
+/// is wrong for all of them.
+test::SmallTree leaves_on_a_half_lit_card() {
+    test::SmallTree result;
+    result.scene.optics = {{glm::vec3(0.7f), glm::vec3(0.1f)}, {glm::vec3(0.01f), glm::vec3(0)}};
+    test::add_rectangle(result.scene, {-1, 0, -1}, {0, 0, 2}, {2, 0, 0});
+    test::add_rectangle(result.scene, {0, 3, -1}, {0, 0, 2}, {1, 0, 0}, 1);
+    Random random(5);
+    for (int i = 0; i < 30; ++i) {
+        const glm::vec3 foot(random.uniform(-0.8f, 0.8f), 0.05f, random.uniform(-0.8f, 0.8f));
+        const float turn = random.uniform(0, kPi);
+        test::add_rectangle(result.scene, foot, 0.2f * glm::vec3(std::cos(turn), 0, std::sin(turn)), {0, 0.1f, 0});
+    }
+    result.tree.leaves.resize(result.scene.leaf_count);
+    return result;
+}
+
+Environment sun_overhead() {
+    Environment environment = test::constant_environment(glm::vec3(0.1f));
+    DistantLight sun;
+    sun.direction = {0, 1, 0};
+    sun.half_angle = 0.0047f;
+    sun.irradiance = glm::vec3(5);
+    environment.distant_lights.push_back(sun);
+    return environment;
+}
+
+double true_error(const test::SmallTree& small, const Environment& environment, const Solution& solution) {
+    const PathTracedReference truth = path_trace_reference(small.scene, environment, 2048, 9, silent_progress());
+    const double mre =
+        accuracy(leaf_side_radiance(small.scene, solution.radiance), truth.sides, solid_areas(small.scene)).mre;
+    return std::sqrt(std::max(mre * mre - truth.noise * truth.noise, 0.0));
+}
+
+bool says(const Solution& solution, const char* text) {
+    return std::any_of(solution.report.warnings.begin(), solution.report.warnings.end(),
+                       [&](const std::string& warning) { return warning.find(text) != std::string::npos; });
+}
+
+TEST(BundlesModelError, LightThatIsUnevenOverALeafIsSeen) {
+    const test::SmallTree small = leaves_on_a_half_lit_card();
+    const Environment environment = sun_overhead();
+    ShadingOptions options;
+    options.effort = 640;
+    const auto transport = make_transport(small.scene, small.tree, options, silent_progress());
+    const Solution solution = transport->solve(environment, silent_progress());
+    const double error = true_error(small, environment, solution);
+    EXPECT_GT(error, 0.5);
+    EXPECT_GT(*solution.estimated_error, error / 1.5);
+    EXPECT_LT(*solution.estimated_error, error * 1.5);
+
+    // Another light: another error. Evenly lit, a card has one radiance.
+    Environment even = environment;
+    even.distant_lights.clear();
+    const Solution relit = transport->solve(even, silent_progress());
+    const double relit_error = true_error(small, even, relit);
+    EXPECT_LT(relit_error, 0.5 * error);
+    EXPECT_GT(*relit.estimated_error, relit_error / 1.5);
+    EXPECT_LT(*relit.estimated_error, relit_error * 1.5);
+}
+
+TEST(BundlesModelError, WhatCanNotBeReachedIsTracedByPathsAndSaid) {
+    const test::SmallTree small = leaves_on_a_half_lit_card(); // it has no tree to divide
+    const Environment environment = sun_overhead();
+    ShadingOptions options;
+    options.error = 0.05;
+    const Solution solution =
+        make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+    EXPECT_TRUE(says(solution, "paths were traced"));
+    EXPECT_LT(true_error(small, environment, solution), 1.5 * options.error);
+    EXPECT_LT(*solution.estimated_error, 1.1 * options.error);
+
+    options.error = 2; // within reach: one radiance for the card is wrong by 100 %
+    EXPECT_FALSE(
+        says(make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress()),
+             "paths were traced"));
+}
+
+/// Gives up if it may and is told to; else returns its number as the error.
+class Step : public Transport {
+  public:
+    Step(double number, bool gives_up, Reach& reach) : number_(number), gives_up_(gives_up), reach_(reach) {}
+    Solution solve(const Environment&, Progress&) override {
+        Solution solution;
+        reach_.gave_up = gives_up_ && reach_.may_give_up;
+        solution.estimated_error = number_;
+        solution.report.stages.push_back({"step", 0, 0});
+        solution.transport_bytes = optics_;
+        return solution;
+    }
+    void set_optics(const std::vector<Optics>& optics) override { optics_ = optics.size(); }
+    std::size_t bytes() const override { return 0; }
+
+  private:
+    double number_;
+    bool gives_up_;
+    Reach& reach_;
+    std::size_t optics_ = 0;
+};
+
+TEST(BundlesSteps, TheNextIsTakenWhereOneGivesUpAndKept) {
+    int made = 0;
+    auto step = [&](double number, bool gives_up) {
+        return [&made, number, gives_up](Reach& reach, Progress&) {
+            ++made;
+            return std::make_unique<Step>(number, gives_up, reach);
+        };
+    };
+    const auto steps = make_steps({step(1, true), step(2, true), step(3, true)}, silent_progress());
+    EXPECT_EQ(made, 1) << "later ones are not made before they are needed";
+    steps->set_optics(std::vector<Optics>(5));
+    const Solution solution = steps->solve({}, silent_progress());
+    EXPECT_EQ(solution.estimated_error, 3) << "the last can't give up";
+    EXPECT_EQ(solution.report.stages.size(), 3u) << "their work is reported";
+    EXPECT_EQ(solution.transport_bytes, 5u) << "they have the colours that were set";
+    EXPECT_EQ(steps->solve({}, silent_progress()).estimated_error, 3);
+    EXPECT_EQ(made, 3);
+    EXPECT_EQ(
+        make_steps({step(1, false), step(2, false)}, silent_progress())->solve({}, silent_progress()).estimated_error,
+        1);
+}
+
+} // namespace
+} // namespace kokage
