@@ -6,7 +6,7 @@
 namespace kokage {
 
 /// What one radiance a leaf side costs however many lines are drawn (an MRE): light leaves a side as if it were lit
-/// evenly. It is 0.9 ... 1.5 % in ordinary crowns, of which ModelError assumes this; in other scenes, and where lines
+/// evenly. It is 0.9 ... 2.5 % in ordinary crowns, of which ModelError assumes this; in other scenes, and where lines
 /// are many, it measures. Leaves in four parts have about half of it.
 inline constexpr double kUniformSideError = 0.011;
 

@@ -263,7 +263,9 @@ MeasuredError ErrorByPaths::measure(const JudgedSides& judged, const Environment
         traced.second = chosen_sides(leaf_side_radiance(scene_, paths.radiance(optics, 1)), traced.leaves);
         MeasuredError result = error_beneath_noise(judged, traced);
         result.paths = paths.paths_traced();
-        if (result.uncertainty <= kUncertainty || 2 * count * sides_traced > most_paths || count >= kMostPaths)
+        // Small errors hide deeper in the noise.
+        const std::uint64_t allowed = result.uncertainty > 1.4 * kUncertainty ? 4 * most_paths : most_paths;
+        if (result.uncertainty <= kUncertainty || 2 * count * sides_traced > allowed || count >= kMostPaths)
             return result;
     }
 }

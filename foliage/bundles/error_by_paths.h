@@ -48,8 +48,8 @@ std::vector<std::uint32_t> sample_leaves(const std::vector<double>& leaf_areas, 
 class ErrorByPaths {
   public:
     explicit ErrorByPaths(const PatchScene& scene);
-    /// Traces until the uncertainty is 15 %, or `most_paths` would be exceeded. `max_bounces` as in ShadingOptions.
-    /// No leaves: no error.
+    /// Traces until the uncertainty is 15 %, or `most_paths` would be exceeded (four times as many if it is above 30
+    /// %). `max_bounces` as in ShadingOptions. No leaves: no error.
     MeasuredError measure(const JudgedSides& judged, const Environment& environment, const std::vector<Optics>& optics,
                           int max_bounces, std::uint64_t seed, std::uint64_t most_paths, Progress& progress);
     std::size_t bytes() const { return queries_.bytes() + points_.bytes(); }

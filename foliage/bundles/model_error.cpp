@@ -79,8 +79,8 @@ SolutionError ModelError::measure(double sampling_error, const std::vector<Rgb>&
     report.counts.push_back({"paths that checked the error", found.paths});
     // What both ways say, each weighted by how well it knows; the halves don't see the model error, so that their word
     // counts only where paths are uncertain.
-    constexpr double kGuess = 0.3;
-    const double trust = 1 / (1 + std::pow(found.uncertainty / kGuess, 4));
+    const double guess = std::isfinite(largest_) ? 0.2 : 0.3; // how far off the assumed error would be, about
+    const double trust = 1 / (1 + std::pow(found.uncertainty / guess, 4));
     const double square =
         trust * found.error * found.error + (1 - trust) * (sampling_error * sampling_error + assumed_ * assumed_);
     SolutionError error;
