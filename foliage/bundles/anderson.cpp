@@ -3,87 +3,89 @@
 #include "common/services/parallel.h"
 
 #include <Eigen/Dense>
-#include <cmath>
+#include <hwy/highway.h>
+#include <utility>
 
 namespace kokage::bundles {
 namespace {
 
-constexpr std::size_t kBlock = 8192;
+namespace hn = hwy::HWY_NAMESPACE;
+using Rgb4 = hn::FixedTag<float, 4>;
+constexpr std::size_t kBlock = 4096;
 
-std::vector<Rgb> difference(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-    std::vector<Rgb> result(a.size());
-    parallel_blocks(a.size(), kBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t i = from; i < to; ++i)
-            result[i] = {a[i].r - b[i].r, a[i].g - b[i].g, a[i].b - b[i].b, 0};
-    });
-    return result;
+/// The weights that make |f0 - w1 d1 - w2 d2| least, per channel. Steps that no longer differ get no weight instead of
+/// a huge one.
+std::array<glm::vec3, 2> least_squares(const HistoryProducts& products) {
+    std::array<glm::vec3, 2> weights{glm::vec3(0.f), glm::vec3(0.f)};
+    for (glm::length_t c = 0; c < 3; ++c) {
+        Eigen::Matrix2d gram;
+        gram << products.d1_d1[c], products.d1_d2[c], products.d1_d2[c], products.d2_d2[c];
+        const Eigen::Vector2d right(products.d1_f0[c], products.d2_f0[c]);
+        const Eigen::Vector2d solution = gram.completeOrthogonalDecomposition().solve(right);
+        for (int i = 0; i < 2 && solution.allFinite(); ++i)
+            weights[std::size_t(i)][c] = float(solution[i]);
+    }
+    return weights;
 }
 
-/// Per channel, added in block order.
-glm::dvec3 inner_product(const std::vector<Rgb>& a, const std::vector<Rgb>& b) {
-    std::vector<glm::dvec3> parts((a.size() + kBlock - 1) / kBlock);
+/// sum = a wa + b wb + c wc; wherever b or c is empty, it has no weight. False if much of it is negative.
+bool combine(const std::vector<Rgb>& a, const std::vector<Rgb>& b, const std::vector<Rgb>& c,
+             const std::array<glm::vec3, 3>& weights, std::vector<Rgb>& sum) {
+    HWY_ALIGN float w[3][4];
+    for (std::size_t i = 0; i < 3; ++i)
+        for (glm::length_t k = 0; k < 4; ++k)
+            w[i][k] = k < 3 ? weights[i][k] : 0.f;
+    struct Signs {
+        glm::dvec3 positive{0.0}, negative{0.0};
+    };
+    std::vector<Signs> parts((a.size() + kBlock - 1) / kBlock);
     parallel_blocks(a.size(), kBlock, [&](std::size_t from, std::size_t to) {
-        double sum[4] = {0, 0, 0, 0};
+        const Rgb4 d;
+        const auto wa = hn::Load(d, w[0]), wb = hn::Load(d, w[1]), wc = hn::Load(d, w[2]), zero = hn::Zero(d);
+        auto positive = zero, negative = zero;
         for (std::size_t i = from; i < to; ++i) {
-            sum[0] += double(a[i].r) * b[i].r;
-            sum[1] += double(a[i].g) * b[i].g;
-            sum[2] += double(a[i].b) * b[i].b;
+            auto value = hn::Mul(wa, hn::Load(d, &a[i].r));
+            if (!b.empty())
+                value = hn::MulAdd(wb, hn::Load(d, &b[i].r), value);
+            if (!c.empty())
+                value = hn::MulAdd(wc, hn::Load(d, &c[i].r), value);
+            hn::Store(value, d, &sum[i].r);
+            positive = hn::Add(positive, hn::Max(value, zero));
+            negative = hn::Sub(negative, hn::Min(value, zero));
         }
-        parts[from / kBlock] = {sum[0], sum[1], sum[2]};
+        HWY_ALIGN float lanes[2][4];
+        hn::Store(positive, d, lanes[0]);
+        hn::Store(negative, d, lanes[1]);
+        parts[from / kBlock] = {{lanes[0][0], lanes[0][1], lanes[0][2]}, {lanes[1][0], lanes[1][1], lanes[1][2]}};
     });
-    glm::dvec3 total(0.0);
-    for (const glm::dvec3& part : parts)
-        total += part;
-    return total;
+    Signs all;
+    for (const Signs& part : parts) {
+        all.positive += part.positive;
+        all.negative += part.negative;
+    }
+    return !glm::any(glm::greaterThan(all.negative, 0.1 * all.positive));
 }
 
 } // namespace
 
-std::vector<Rgb> AndersonAcceleration::next(const std::vector<Rgb>& x, const std::vector<Rgb>& image) {
-    std::vector<Rgb> residual = difference(image, x);
-    if (!last_residual_.empty()) {
-        steps_.push_back({difference(residual, last_residual_), difference(image, last_image_), {}});
-        if (int(steps_.size()) > depth_)
-            steps_.pop_front();
-        Step& newest = steps_.back();
-        for (auto step = steps_.rbegin(); step != steps_.rend(); ++step)
-            newest.products.push_back(inner_product(newest.residual_change, step->residual_change));
+SweepHistory AndersonAcceleration::history() const {
+    return {{sweeps_[0].read, sweeps_[1].read}, {sweeps_[0].made, sweeps_[1].made}};
+}
+
+void AndersonAcceleration::advance(std::vector<Rgb>& x, std::vector<Rgb>& image, const HistoryProducts& products) {
+    std::vector<Rgb> next = std::move(sweeps_[1].read); // is read no more
+    next.resize(x.size());
+    bool plausible = false;
+    if (!sweeps_[0].made.empty()) {
+        const auto [w1, w2] = least_squares(products);
+        plausible = combine(image, sweeps_[0].made, sweeps_[1].made, {1.f - w1, w1 - w2, w2}, next);
     }
-    const auto depth = Eigen::Index(steps_.size());
-    std::vector<glm::vec3> weights(steps_.size(), glm::vec3(0.f));
-    Eigen::MatrixXd gram[3];
-    Eigen::VectorXd right[3];
-    for (int c = 0; c < 3; ++c) {
-        gram[c].resize(depth, depth);
-        right[c].resize(depth);
-    }
-    for (Eigen::Index i = 0; i < depth; ++i) {
-        const glm::dvec3 projection = inner_product(steps_[std::size_t(i)].residual_change, residual);
-        for (int c = 0; c < 3; ++c)
-            right[c][i] = projection[c];
-        for (Eigen::Index j = 0; j <= i; ++j)
-            for (int c = 0; c < 3; ++c)
-                gram[c](i, j) = gram[c](j, i) = steps_[std::size_t(i)].products[std::size_t(i - j)][c];
-    }
-    for (int c = 0; c < 3 && depth > 0; ++c) {
-        // The least-norm solution: steps that no longer differ get no weight instead of a huge one.
-        const Eigen::VectorXd solution = gram[c].completeOrthogonalDecomposition().solve(right[c]);
-        for (Eigen::Index i = 0; i < depth; ++i)
-            weights[std::size_t(i)][c] = std::isfinite(solution[i]) ? float(solution[i]) : 0.f;
-    }
-    std::vector<Rgb> next = image;
-    parallel_blocks(next.size(), kBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t k = 0; k < steps_.size(); ++k)
-            for (std::size_t i = from; i < to; ++i) {
-                const Rgb& change = steps_[k].image_change[i];
-                next[i].r -= weights[k].x * change.r;
-                next[i].g -= weights[k].y * change.g;
-                next[i].b -= weights[k].z * change.b;
-            }
-    });
-    last_residual_ = std::move(residual);
-    last_image_ = image;
-    return next;
+    if (!plausible)
+        next = image;
+    std::vector<Rgb> room = std::move(sweeps_[1].made);
+    room.resize(x.size());
+    sweeps_[1] = std::move(sweeps_[0]);
+    sweeps_[0] = {std::exchange(x, std::move(next)), std::exchange(image, std::move(room))};
 }
 
 } // namespace kokage::bundles

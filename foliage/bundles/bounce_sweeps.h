@@ -7,29 +7,24 @@
 // Every row's weights are non-negative and sum to at most 1, so a sweep contracts the largest difference by the largest
 // rho + tau. The open share comes from all lines, the neighbours' mean from the link lines: in a furnace (constant
 // surroundings, rho + tau = 1) B = 1 solves the equations exactly, whatever the noise of either.
-#include "foliage/bundles/bundle_tracing.h"
+#include "foliage/bundles/scattering.h"
 
 #include <vector>
 
 namespace kokage::bundles {
 
-/// RGB and a pad, so that a side is one aligned vector.
-struct alignas(16) Rgb {
-    float r = 0, g = 0, b = 0, pad = 0;
-    glm::vec3 vec() const { return {r, g, b}; }
-    static Rgb from(const glm::vec3& v) { return {v.x, v.y, v.z, 0}; }
+/// What arrives from outside the tree at every side; all per side.
+struct SideLight {
+    std::vector<Rgb> irradiance;
+    std::vector<float> open; ///< share of its cosine-weighted hemisphere that sees surroundings or ground
+    std::vector<float> down; ///< of that, the share of the lower hemisphere
 };
 
-/// What arrives from outside the tree at every side.
-struct OutsideLight {
-    std::vector<Rgb> irradiance; ///< per side
-    std::vector<float> open;     ///< per side: share of its cosine-weighted hemisphere that sees surroundings or ground
-    std::vector<float> down;     ///< of that, the share of the lower hemisphere
-    // With a ground:
-    std::vector<glm::vec3>
-        ground_irradiance;                 ///< per texel: from lights, with the tree's shadow, and the whole open sky
-    glm::vec3 open_ground_irradiance{0.f}; ///< of ground that lies open
-    std::vector<glm::vec3> near_radiance;  ///< per link direction: what the tree hides from the ground
+/// The same, and what the ground needs, where there is one.
+struct OutsideLight : SideLight {
+    std::vector<glm::vec3> ground_irradiance; ///< per texel: from lights, with the tree's shadow, and the open sky
+    glm::vec3 open_ground_irradiance{0.f};    ///< of ground that lies open
+    std::vector<glm::vec3> near_radiance;     ///< per link direction: what the tree hides from the ground
 };
 
 struct SweepLimits {
@@ -40,8 +35,15 @@ struct SweepLimits {
 struct SweepResult {
     std::vector<Rgb> radiance;     ///< B per side
     std::vector<double> residuals; ///< per sweep: largest change of a side over the largest radiance
+    int coarse_sweeps = 0;         ///< over a quarter of the links, for a first guess; not among the residuals
     std::vector<Rgb>
         from_ground; ///< per side: mean of (B_ground - B_open_ground) over its lines to the ground; empty without
+};
+
+/// What the two halves of the directions make of the same light.
+struct HalvesResult {
+    std::vector<Rgb> half_difference; ///< per side: half of what their radiances differ by
+    std::vector<Rgb> irradiance;      ///< per side: the mean of theirs
 };
 
 class BounceOperator {
@@ -49,28 +51,33 @@ class BounceOperator {
     BounceOperator(const PatchScene& scene, const BundleTransport& transport);
     /// Iterates from the first scattering of the outside light (or from `start`, if it is as long).
     SweepResult solve(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
-                      const std::vector<Rgb>& start) const;
-    /// One more scattering with the neighbours of one half of the directions only (0 or 1), or of both (-1).
-    /// `irradiance`, if given, receives E per side.
-    std::vector<Rgb> scatter(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepResult& light,
-                             int half, std::vector<Rgb>* irradiance = nullptr) const;
+                      const std::vector<Rgb>& start);
+    /// One more scattering with the neighbours and the outside light of each half of the directions.
+    HalvesResult scatter_by_halves(const SideLight (&outside)[2], const std::vector<Optics>& optics,
+                                   const SweepResult& light);
 
-    /// Takes out of a solution what lines echo. A line from i to j stands in both rows, so light that went along it
-    /// comes back along it more often than chance would have it, and crowns of little absorption turn out too bright by
-    /// O(1 / lines). Corrected to first order: each row sees its neighbour's radiance as the neighbour's other lines
-    /// give it.
-    void remove_echoes(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& light) const;
-    /// The first `orders` scatterings of differences between two solutions: what an error does to the light around it.
-    std::vector<Rgb> spread(const OutsideLight& outside, const std::vector<Optics>& optics,
-                            const std::vector<Rgb>& difference, int orders) const;
+    /// Adds to a difference between two solutions its first scattering: what an error does to the light around it.
+    void spread(const std::vector<float>& open, const std::vector<Optics>& optics, std::vector<Rgb>& difference);
+    /// The share of light that a bounce hands on, at most: the largest albedo times the mean closed share.
+    double mean_survival(const SideLight& outside, const std::vector<Optics>& optics) const;
 
   private:
     std::vector<glm::vec3> light_ground(const OutsideLight& outside, const std::vector<Rgb>& radiance) const;
     std::vector<Rgb> gather_ground(const std::vector<glm::vec3>& ground_excess) const;
+    void add_ground(const SideLight& outside, const std::vector<Rgb>& from_ground, std::vector<Rgb>& irradiance) const;
+    void find_echoes(const OutsideLight& outside, const std::vector<Optics>& optics, const std::vector<Rgb>& radiance);
+    bool iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
+                 double tolerance, SweepResult& result);
+    void emit(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& result, bool ground);
+    const LinkWeights& weights_for(const std::vector<float>& open);
 
     const PatchScene& scene_;
     const BundleTransport& transport_;
     std::vector<float> ground_links_; ///< per side: number of links to the ground
+    std::vector<float> weighed_open_; ///< what weights_ were made for
+    LinkWeights weights_;
+    std::vector<Rgb> echoes_;     ///< per side: radiance that lines echo wrongly, to be taken out; empty = unknown
+    std::vector<Rgb> scratch_[3]; ///< per side
 };
 
 } // namespace kokage::bundles

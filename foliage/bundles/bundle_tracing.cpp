@@ -44,29 +44,36 @@ void store_open(const Facets& facets, const RasterScratch& raster, std::size_t r
     }
 }
 
-/// Which side of a patch looks to the near and to the far end of lines of one direction, for every face.
-struct FaceSides {
-    std::vector<Side> near_side, far_side;
+/// A side, and whether it is the inside of wood.
+struct FacingSide {
+    static constexpr std::uint32_t kInsideWood = 0x80000000u;
+    std::uint32_t value;
+    Side side() const { return value & ~kInsideWood; }
+    bool inside_wood() const { return (value & kInsideWood) != 0; }
 };
 
-void face_sides(const Facets& facets, const glm::vec3& direction, FaceSides& sides) {
-    sides.near_side.resize(facets.face_count());
-    sides.far_side.resize(facets.face_count());
+/// Which side of a patch looks to the near and to the far end of lines of one direction.
+struct FaceSides {
+    FacingSide near_side, far_side;
+};
+
+/// For every face.
+void face_sides(const Facets& facets, const glm::vec3& direction, std::vector<FaceSides>& sides) {
+    sides.resize(facets.face_count());
     for (std::uint32_t f = 0; f < facets.leaf_facet_count; ++f) {
         const Side front = 2 * facets.facets[f].patch;
         const bool front_is_near = glm::dot(facets.facets[f].normal, direction) < 0;
-        sides.near_side[f] = front + !front_is_near;
-        sides.far_side[f] = front + front_is_near;
+        sides[f] = {{front + !front_is_near}, {front + front_is_near}};
     }
     for (std::uint32_t f = facets.leaf_facet_count, face = f; f < facets.facets.size(); ++f, face += 2) {
-        const Side front = 2 * facets.facets[f].patch;
-        sides.near_side[face] = sides.far_side[face + 1] = front;
-        sides.far_side[face] = sides.near_side[face + 1] = front + 1; // inside the wood
+        const FacingSide front{2 * facets.facets[f].patch}, inside{(front.value + 1) | FacingSide::kInsideWood};
+        sides[face] = {front, inside};
+        sides[face + 1] = {inside, front};
     }
 }
 
 struct Pair {
-    Side near_side, far_side; ///< the two sides that face each other
+    std::uint32_t a, b; ///< the two sides that face each other: FacingSide::value
 };
 
 struct DirectionLinks {
@@ -95,36 +102,36 @@ GroundProjection project_to_ground(const GroundGrid& grid, const Projection& pro
     return {origin, point(1, 0) - origin, point(0, 1) - origin, true};
 }
 
-/// `first_bark`: the first side of bark; odd sides from there on are the inside of wood. What walls see of each other
-/// in there is nobody's light and is left out; leaves that reach into the wood (most do, at their stalk) see the dark
-/// wall.
-void collect_links(const RasterScratch& raster, const Projection& projection, const FaceSides& sides,
-                   std::uint32_t face_mask, Side first_bark, const std::optional<GroundGrid>& grid, std::uint32_t phase,
+/// What the walls inside wood see of each other is nobody's light and is left out; leaves that reach into the wood
+/// (most do, at their stalk) see the dark wall.
+void collect_links(const RasterScratch& raster, const Projection& projection, const std::vector<FaceSides>& sides,
+                   std::uint32_t face_mask, const std::optional<GroundGrid>& grid, std::uint32_t phase,
                    DirectionLinks& out) {
-    const auto inside_wood = [first_bark](Side side) { return side % 2 == 1 && side >= first_bark; };
     const GroundProjection on_ground = grid ? project_to_ground(*grid, projection) : GroundProjection{};
+    out.pairs.resize(raster.fragment_count);
+    Pair* pair = out.pairs.data();
     for (int y = 0; y < projection.height; ++y)
         for (int x = 0; x < projection.width; ++x) {
             const std::size_t pixel = std::size_t(y) * projection.width + x;
             const std::uint32_t begin = raster.pixel_begin[pixel], end = raster.pixel_begin[pixel + 1];
             if (begin == end)
                 continue;
-            Side open = sides.far_side[raster.sorted_keys[begin] & face_mask];
+            FacingSide open = sides[raster.sorted_keys[begin] & face_mask].far_side;
             for (std::uint32_t i = begin + 1; i < end; ++i) {
-                const std::uint32_t face = raster.sorted_keys[i] & face_mask;
-                const Side near_side = sides.near_side[face];
-                if (!(inside_wood(open) && inside_wood(near_side)))
-                    out.pairs.push_back({open, near_side});
-                open = sides.far_side[face];
+                const FaceSides face = sides[raster.sorted_keys[i] & face_mask];
+                *pair = {open.value, face.near_side.value};
+                pair += !(open.inside_wood() && face.near_side.inside_wood());
+                open = face.far_side;
             }
             constexpr std::uint32_t stride = GroundGrid::kStride;
-            if (on_ground.valid && !inside_wood(open) && (std::uint32_t(x) + phase) % stride == 0 &&
+            if (on_ground.valid && !open.inside_wood() && (std::uint32_t(x) + phase) % stride == 0 &&
                 (std::uint32_t(y) + phase / stride) % stride == 0) {
                 const glm::vec2 hit = on_ground.origin + float(x) * on_ground.along_u + float(y) * on_ground.along_v;
                 if (const int texel = grid->texel_at(hit.x, hit.y); texel >= 0)
-                    out.ground.push_back({open, std::uint32_t(texel)});
+                    out.ground.push_back({open.side(), std::uint32_t(texel)});
             }
         }
+    out.pairs.resize(std::size_t(pair - out.pairs.data()));
 }
 
 /// Compressed rows from pairs. The halves fill disjoint parts of each row, each in the order of its directions.
@@ -139,10 +146,9 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         cursor[h].assign(side_count, 0);
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
-            for (const Pair& pair : directions[d].pairs) {
-                cursor[h][pair.near_side] += !inside_wood(pair.near_side);
-                cursor[h][pair.far_side] += !inside_wood(pair.far_side);
-            }
+            for (const Pair& pair : directions[d].pairs)
+                for (const FacingSide facing : {FacingSide{pair.a}, FacingSide{pair.b}})
+                    cursor[h][facing.side()] += !facing.inside_wood();
     });
     links.begin.resize(side_count + 1);
     links.middle.resize(side_count);
@@ -172,10 +178,11 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
             for (const Pair& pair : directions[d].pairs) {
-                if (!inside_wood(pair.near_side))
-                    links.neighbours[cursor[h][pair.near_side]++] = pair.far_side;
-                if (!inside_wood(pair.far_side))
-                    links.neighbours[cursor[h][pair.far_side]++] = pair.near_side;
+                const FacingSide a{pair.a}, b{pair.b};
+                if (!a.inside_wood())
+                    links.neighbours[cursor[h][a.side()]++] = b.side();
+                if (!b.inside_wood())
+                    links.neighbours[cursor[h][b.side()]++] = a.side();
             }
     });
 }
@@ -225,9 +232,6 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
     transport.link_open.pixels_per_area = link_density * link_density;
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
 
-    const Side first_bark = facets.leaf_facet_count < facets.facets.size()
-                                ? 2 * facets.facets[facets.leaf_facet_count].patch
-                                : 2 * facets.patch_count;
     std::vector<DirectionLinks> collected(linked);
     std::vector<std::size_t> fragments(skies + linked, 0);
     transport.links.ground_pixel_area.resize(linked);
@@ -241,10 +245,10 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
             const Projection projection = fit_projection(facets, direction, link_density, jitter);
             draw_fragments(scene, facets, projection, raster);
             store_open(facets, raster, task, transport.link_open, true);
-            thread_local FaceSides sides;
+            thread_local std::vector<FaceSides> sides;
             face_sides(facets, direction, sides);
             const auto phase = std::uint32_t(hash64(settings.seed * 977 + task));
-            collect_links(raster, projection, sides, face_mask, first_bark, transport.ground, phase, collected[task]);
+            collect_links(raster, projection, sides, face_mask, transport.ground, phase, collected[task]);
             transport.links.ground_pixel_area[task] =
                 float(GroundGrid::kStride * GroundGrid::kStride) / (link_density * link_density);
         } else {

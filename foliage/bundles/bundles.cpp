@@ -50,7 +50,6 @@ class BundlesTransport : public Transport {
   private:
     struct Lit {
         BeamLight beams;
-        SkyLight sky;
         OutsideLight outside;
         SweepResult light;
         double sampling_error = 0;
@@ -60,7 +59,6 @@ class BundlesTransport : public Transport {
     void draw(const BundleEffort& effort, Progress& progress);
     void trace_small_leaves(const BundleTransport& earlier, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
-    OutsideLight outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams, int half) const;
     SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
     void fill(Solution& solution, const Lit& lit) const;
     void balance(Solution& solution, const Lit& lit) const;
@@ -118,21 +116,28 @@ void BundlesTransport::trace_small_leaves(const BundleTransport& earlier, Progre
 }
 
 std::size_t BundlesTransport::bytes() const {
-    return transport_.bytes() + (lights_ ? lights_->bytes() : 0) + (ray_lights_ ? ray_lights_->bytes() : 0) +
+    return facets_.bytes() + transport_.bytes() + (lights_ ? lights_->bytes() : 0) + (ray_lights_ ? ray_lights_->bytes() : 0) +
            (rays_ ? rays_->queries.bytes() + rays_->points.bytes() : 0);
 }
 
-OutsideLight BundlesTransport::outside(const SkyLight& sky, const SkyLight::PerSide& side, const BeamLight& beams,
-                                       int half) const {
-    OutsideLight light;
-    light.open = side.open;
-    light.down = side.down;
-    light.irradiance.resize(side.irradiance.size());
-    for (std::size_t s = 0; s < light.irradiance.size(); ++s) {
-        const glm::vec3 from_lights = half < 0 ? beams.mean(Side(s)) : beams.halves[half][s].vec();
-        light.irradiance[s] = Rgb::from(side.irradiance[s].vec() + from_lights);
+/// Adds the lights to what the sky gives to every side.
+void add_lights(const BeamLight& beams, SkyLight& sky) {
+    for (std::size_t s = 0; s < sky.all.irradiance.size(); ++s) {
+        const glm::vec3 first = beams.halves[0][s].vec(), second = beams.halves[1][s].vec();
+        auto add = [s](SideLight& side, const glm::vec3& light) {
+            side.irradiance[s] = Rgb::from(side.irradiance[s].vec() + light);
+        };
+        add(sky.halves[0], first);
+        add(sky.halves[1], second);
+        add(sky.all, 0.5f * (first + second));
     }
-    light.near_radiance = sky.near_radiance;
+}
+
+/// Sky and lights together, moved out of `sky`.
+OutsideLight outside_light(SkyLight& sky, const BeamLight& beams) {
+    OutsideLight light;
+    static_cast<SideLight&>(light) = std::move(sky.all);
+    light.near_radiance = std::move(sky.near_radiance);
     light.open_ground_irradiance = sky.open_ground_irradiance + beams.open_ground;
     light.ground_irradiance = beams.ground;
     for (glm::vec3& irradiance : light.ground_irradiance)
@@ -150,8 +155,9 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     Lit lit;
     lit.beams = lights_->light(environment, effort_, 0.02 * options_.error, options_.seed, progress, report);
     stage("lights");
-    lit.sky = gather_sky(scene_, facets_, transport_, environment.remainder, lit.beams.open_ground);
-    lit.outside = outside(lit.sky, lit.sky.all, lit.beams, -1);
+    SkyLight sky = gather_sky(scene_, facets_, transport_, environment.remainder, lit.beams.open_ground);
+    add_lights(lit.beams, sky);
+    lit.outside = outside_light(sky, lit.beams);
     stage("sky");
     SweepLimits limits;
     limits.tolerance = effort_.tolerance;
@@ -159,19 +165,11 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     lit.light =
         bounces_->solve(lit.outside, optics_, limits, limits.max_bounces > 0 ? std::vector<Rgb>() : last_radiance_);
     stage("bounces");
-    std::vector<Rgb> irradiance[2], radiance[2];
-    for (int h = 0; h < 2; ++h)
-        radiance[h] =
-            bounces_->scatter(outside(lit.sky, lit.sky.halves[h], lit.beams, h), optics_, lit.light, h, &irradiance[h]);
-    constexpr int kSpreadOrders = 2;
-    std::vector<Rgb> difference(lit.light.radiance.size());
-    for (std::size_t s = 0; s < difference.size(); ++s)
-        difference[s] = Rgb::from(0.5f * (radiance[0][s].vec() - radiance[1][s].vec()));
-    lit.half_differences = bounces_->spread(lit.outside, optics_, difference, kSpreadOrders);
+    HalvesResult halves = bounces_->scatter_by_halves(sky.halves, optics_, lit.light);
+    bounces_->spread(lit.outside.open, optics_, halves.half_difference); // errors bounce, too
+    lit.half_differences = std::move(halves.half_difference);
     lit.sampling_error = half_difference_error(scene_, lit.light.radiance, lit.half_differences);
-    lit.irradiance = std::move(irradiance[0]);
-    for (std::size_t s = 0; s < lit.irradiance.size(); ++s)
-        lit.irradiance[s] = Rgb::from(0.5f * (lit.irradiance[s].vec() + irradiance[1][s].vec()));
+    lit.irradiance = std::move(halves.irradiance);
     stage("error estimate");
     return lit;
 }
@@ -194,8 +192,8 @@ void BundlesTransport::fill(Solution& solution, const Lit& lit) const {
         const glm::vec3 direct_back = (optics.reflectance * lit_back + optics.transmittance * lit_front) / kPi;
         solution.indirect.front[p] = glm::max(solution.radiance.front[p] - direct_front, 0.f);
         solution.indirect.back[p] = glm::max(solution.radiance.back[p] - direct_back, 0.f);
-        solution.sky_visibility_front[p] = lit.sky.all.open[front] - (scene_.ground ? lit.sky.all.down[front] : 0.f);
-        solution.sky_visibility_back[p] = lit.sky.all.open[back] - (scene_.ground ? lit.sky.all.down[back] : 0.f);
+        solution.sky_visibility_front[p] = lit.outside.open[front] - (scene_.ground ? lit.outside.down[front] : 0.f);
+        solution.sky_visibility_back[p] = lit.outside.open[back] - (scene_.ground ? lit.outside.down[back] : 0.f);
     }
 }
 
@@ -266,7 +264,8 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
         const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
         // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
         const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
-        BundleEffort more = effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), options_.seed);
+        BundleEffort more =
+            effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), mean_leaf_albedo(scene_), options_.seed);
         if (more.lines.sky_directions + more.lines.link_directions <= directions)
             break;
         more.tolerance = effort_.tolerance;
@@ -328,11 +327,11 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
                                                   const ShadingOptions& options, Progress& progress) {
     const bool adaptive = options.effort == 0;
     // `tree` and `scene` outlive the transport, `options` may not.
-    auto make = [&tree, options, adaptive](const PatchScene& patches, double uniform_side_error, Reach& reach,
+    auto make = [&tree, options, adaptive, albedo = mean_leaf_albedo(scene)](const PatchScene& patches, double uniform_side_error, Reach& reach,
                                            Progress& stop) -> std::unique_ptr<Transport> {
         const double sampling_error = sampling_error_for(options.error, uniform_side_error);
-        BundleEffort effort =
-            effort_of_directions(adaptive ? directions_for_error(sampling_error) : options.effort, options.seed);
+        BundleEffort effort = effort_of_directions(
+            adaptive ? directions_for_error(sampling_error, albedo) : options.effort, albedo, options.seed);
         effort.uniform_side_error = uniform_side_error;
         effort.tolerance = std::min(effort.tolerance, 0.04 * options.error);
         return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, stop, &tree, &reach);

@@ -9,9 +9,12 @@ namespace {
 
 // Two triangles are taken to lie in one plane when their normals differ by less than about a degree.
 constexpr float kSamePlaneCosine = 0.9998f;
+// Bark has one radiance however its pieces are turned, so a tube's slightly twisted quads may pass as flat: within six
+// degrees, less than the sides of any tube make with each other.
+constexpr float kNearlyFlatCosine = 0.995f;
 
 struct Outline {
-    std::array<glm::vec3, Facets::kMaxCorners> corners;
+    std::array<glm::vec3, PolygonGroup::kMaxCorners> corners;
     int count = 0;
     std::int16_t mask = -1;
     glm::vec3 normal{0.f};
@@ -46,9 +49,10 @@ bool convex_at(const Outline& outline, int i) {
 }
 
 /// Adds a triangle to an outline across a shared edge if the union stays flat, convex and equally textured.
-bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask, const glm::vec3& normal, float area) {
-    if (outline.count >= Facets::kMaxCorners || mask != outline.mask ||
-        glm::dot(normal, outline.normal) < kSamePlaneCosine)
+bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask, const glm::vec3& normal, float area,
+               bool bark) {
+    if (outline.count >= PolygonGroup::kMaxCorners || mask != outline.mask ||
+        glm::dot(normal, outline.normal) < (bark ? kNearlyFlatCosine : kSamePlaneCosine))
         return false;
     for (int e = 0; e < 3; ++e) {
         const glm::vec3 &a = triangle[e].position, &b = triangle[(e + 1) % 3].position;
@@ -59,16 +63,21 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
             const Corner& apex = triangle[(e + 2) % 3];
             if (mask >= 0 && glm::length(mapped_uv(outline.texture, apex.position) - apex.uv) > 1e-3f)
                 return false;
-            Outline larger = outline;
-            std::copy_backward(larger.corners.begin() + i + 1, larger.corners.begin() + larger.count,
-                               larger.corners.begin() + larger.count + 1);
-            larger.corners[i + 1] = apex.position;
-            ++larger.count;
+            const int corners = outline.count;
+            for (int j = corners; j > i + 1; --j)
+                outline.corners[j] = outline.corners[j - 1];
+            outline.corners[i + 1] = apex.position;
+            ++outline.count;
             for (int j = i; j <= i + 2; ++j)
-                if (!convex_at(larger, j % larger.count))
+                if (!convex_at(outline, j % outline.count)) { // as it was
+                    for (int k = i + 1; k < corners; ++k)
+                        outline.corners[k] = outline.corners[k + 1];
+                    outline.count = corners;
                     return false;
-            larger.area += area;
-            outline = larger;
+                }
+            if (bark)
+                outline.normal = glm::normalize(outline.area * outline.normal + area * normal);
+            outline.area += area;
             return true;
         }
     }
@@ -83,6 +92,7 @@ class Builder {
         facets_.patch_first_facet.push_back(std::uint32_t(facets_.facets.size()));
         first_facet_ = facets_.facets.size();
         const Patch& patch = scene_.patches[index];
+        const bool bark = patch.kind == PatchKind::bark;
         Outline outline;
         for (std::uint32_t t = 0; t < patch.triangle_count; ++t) {
             const std::uint32_t triangle = patch.first_triangle + t;
@@ -99,9 +109,9 @@ class Builder {
                 continue;
             const glm::vec3 normal = cross / length;
             const auto mask = scene_.masked(triangle) ? scene_.triangle_mask[triangle] : std::int16_t(-1);
-            if (outline.count > 0 && try_merge(outline, corner, mask, normal, 0.5f * length))
+            if (outline.count > 0 && try_merge(outline, corner, mask, normal, 0.5f * length, bark))
                 continue;
-            flush(outline, index);
+            flush(outline, index, bark);
             outline.count = 3;
             for (int k = 0; k < 3; ++k)
                 outline.corners[k] = corner[k].position;
@@ -111,13 +121,17 @@ class Builder {
             if (mask >= 0)
                 outline.texture = texture_map(corner, normal);
         }
-        flush(outline, index);
+        flush(outline, index, bark);
     }
 
-    void make_groups() {
-        for (int corners = 3; corners <= Facets::kMaxCorners; ++corners)
-            if (!outlines_[std::size_t(corners)].empty())
-                facets_.groups.push_back(make_group(corners));
+    void store_groups() {
+        for (auto& of_corners : groups_)
+            for (PolygonGroup& group : of_corners) {
+                if (group.count == 0)
+                    continue;
+                resize(group, group.count);
+                facets_.groups.push_back(std::move(group));
+            }
     }
 
   private:
@@ -125,15 +139,51 @@ class Builder {
         return glm::vec3((glm::dvec3(position) - facets_.centre) * facets_.scale);
     }
 
-    void flush(Outline& outline, std::uint32_t patch) {
+    void flush(Outline& outline, std::uint32_t patch, bool bark) {
         if (outline.count == 0)
             return;
-        const bool bark = scene_.patches[patch].kind == PatchKind::bark;
         const std::uint32_t facet = facet_for(outline, patch, bark);
         add_area(facets_.facets[facet], outline);
-        const std::uint32_t face = bark ? facets_.leaf_facet_count + 2 * (facet - facets_.leaf_facet_count) : facet;
-        outlines_[std::size_t(outline.count)].push_back({outline, face, bark});
+        add_polygon(outline,
+                    bark ? (facets_.leaf_facet_count + 2 * (facet - facets_.leaf_facet_count)) | PolygonGroup::kBark
+                         : facet);
         outline.count = 0;
+    }
+
+    void add_polygon(const Outline& outline, std::uint32_t face) {
+        const bool masked = outline.mask >= 0;
+        PolygonGroup& group = groups_[std::size_t(outline.count - kFewestCorners)][masked];
+        if (group.face.size() < group.count + 1 + PolygonGroup::kPadding) {
+            group.corners = outline.count;
+            group.masked = masked;
+            // Most trees are pairs of triangles.
+            resize(group,
+                   std::max(2 * group.count, outline.count == 4 ? scene_.triangles.size() / 2 : std::size_t(64)));
+        }
+        const std::size_t i = group.count++;
+        for (std::size_t k = 0; k < std::size_t(outline.count); ++k) {
+            group.x[k][i] = outline.corners[k].x;
+            group.y[k][i] = outline.corners[k].y;
+            group.z[k][i] = outline.corners[k].z;
+        }
+        group.normal_x[i] = outline.normal.x;
+        group.normal_y[i] = outline.normal.y;
+        group.normal_z[i] = outline.normal.z;
+        group.face[i] = face;
+        if (masked) {
+            group.mask.push_back(outline.mask);
+            group.texture.push_back(outline.texture);
+        }
+    }
+
+    static void resize(PolygonGroup& group, std::size_t count) {
+        const std::size_t padded = count + PolygonGroup::kPadding;
+        for (auto* axis : {&group.x, &group.y, &group.z})
+            for (std::size_t k = 0; k < std::size_t(group.corners); ++k)
+                (*axis)[k].resize(padded);
+        for (auto* axis : {&group.normal_x, &group.normal_y, &group.normal_z})
+            axis->resize(padded);
+        group.face.resize(padded);
     }
 
     static void add_area(Facet& facet, const Outline& outline) {
@@ -161,46 +211,9 @@ class Builder {
     const PatchScene& scene_;
     Facets& facets_;
     std::size_t first_facet_ = 0;
-    struct Drawn {
-        Outline outline;
-        std::uint32_t face;
-        bool bark;
-    };
-    std::array<std::vector<Drawn>, Facets::kMaxCorners + 1> outlines_;
-
-    PolygonGroup make_group(int corners) const {
-        const std::vector<Drawn>& drawn = outlines_[std::size_t(corners)];
-        PolygonGroup group;
-        group.corners = corners;
-        group.count = drawn.size();
-        group.stride = group.count + PolygonGroup::kPadding;
-        for (auto* axis : {&group.x, &group.y, &group.z})
-            axis->assign(group.stride * std::size_t(corners), 0.f);
-        for (auto* axis : {&group.normal_x, &group.normal_y, &group.normal_z})
-            axis->assign(group.stride, 0.f);
-        group.face.resize(group.stride);
-        group.bark.resize(group.stride);
-        group.mask.resize(group.stride, -1);
-        if (!scene_.masks.empty())
-            group.texture.resize(group.count);
-        for (std::size_t i = 0; i < group.count; ++i) {
-            const Outline& outline = drawn[i].outline;
-            for (std::size_t k = 0; k < std::size_t(corners); ++k) {
-                group.x[k * group.stride + i] = outline.corners[k].x;
-                group.y[k * group.stride + i] = outline.corners[k].y;
-                group.z[k * group.stride + i] = outline.corners[k].z;
-            }
-            group.normal_x[i] = outline.normal.x;
-            group.normal_y[i] = outline.normal.y;
-            group.normal_z[i] = outline.normal.z;
-            group.face[i] = drawn[i].face;
-            group.bark[i] = drawn[i].bark;
-            group.mask[i] = outline.mask;
-            if (!group.texture.empty())
-                group.texture[i] = outline.texture;
-        }
-        return group;
-    }
+    static constexpr int kFewestCorners = 3;
+    /// By corners, without and with masks.
+    std::array<std::array<PolygonGroup, 2>, PolygonGroup::kMaxCorners - kFewestCorners + 1> groups_;
 };
 
 void measure(const PatchScene& scene, Facets& facets) {
@@ -225,19 +238,31 @@ void measure(const PatchScene& scene, Facets& facets) {
         }
     }
     facets.mean_leaf_area = leaves ? float(leaf_area / double(leaves)) : any ? float(any_area / double(any)) : 0.f;
-    bool first = true;
-    for (const PolygonGroup& group : facets.groups)
-        for (int k = 0; k < group.corners; ++k)
-            for (std::size_t i = 0; i < group.count; ++i) {
-                const std::size_t c = std::size_t(k) * group.stride + i;
-                const glm::vec3 corner(group.x[c], group.y[c], group.z[c]);
-                facets.low = first ? corner : glm::min(facets.low, corner);
-                facets.high = first ? corner : glm::max(facets.high, corner);
-                first = false;
-            }
+}
+
+template <class T>
+std::size_t size_in_bytes(const std::vector<T>& values) {
+    return values.size() * sizeof(T);
 }
 
 } // namespace
+
+std::size_t PolygonGroup::bytes() const {
+    std::size_t sum = size_in_bytes(face) + size_in_bytes(mask) + size_in_bytes(texture);
+    for (const auto* axis : {&x, &y, &z})
+        for (const auto& corner : *axis)
+            sum += size_in_bytes(corner);
+    for (const auto* axis : {&normal_x, &normal_y, &normal_z})
+        sum += size_in_bytes(*axis);
+    return sum;
+}
+
+std::size_t Facets::bytes() const {
+    std::size_t sum = size_in_bytes(facets) + size_in_bytes(patch_first_facet) + size_in_bytes(patch_area);
+    for (const PolygonGroup& group : groups)
+        sum += group.bytes();
+    return sum;
+}
 
 Facets make_facets(const PatchScene& scene) {
     Facets facets;
@@ -251,13 +276,15 @@ Facets make_facets(const PatchScene& scene) {
     facets.centre = 0.5 * (low + high);
     const double diagonal = glm::length(high - low);
     facets.scale = diagonal > 0 ? 1 / diagonal : 1;
+    facets.high = glm::vec3((high - facets.centre) * facets.scale);
+    facets.low = -facets.high;
 
     facets.patch_first_facet.reserve(scene.patches.size() + 1);
     facets.facets.reserve(scene.patches.size());
     Builder builder(scene, facets);
     for (std::uint32_t p = 0; p < facets.patch_count; ++p)
         builder.add_patch(p);
-    builder.make_groups();
+    builder.store_groups();
     facets.patch_first_facet.push_back(std::uint32_t(facets.facets.size()));
     measure(scene, facets);
     return facets;

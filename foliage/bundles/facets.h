@@ -7,6 +7,7 @@
 // scaled to a diagonal of 1, so that no scene is too small or too far away.
 #include "common/scene/patch_scene.h"
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <vector>
@@ -37,25 +38,27 @@ struct TextureMap {
     glm::vec3 u_gradient, v_gradient;
 };
 
-/// Polygons of one corner count, one array a quantity, in patch order; padded so that whole vectors may be read.
+/// Polygons of one corner count, all with a mask or all without; one array a quantity, in patch order; padded so that
+/// whole vectors may be read.
 struct PolygonGroup {
     static constexpr std::size_t kPadding = 64;
+    static constexpr int kMaxCorners = 8;
+    static constexpr std::uint32_t kBark = 0x80000000u; ///< flag in `face`
     int corners = 3;
-    std::size_t count = 0, stride = 0; ///< corner k of polygon i is at k * stride + i
-    std::vector<float> x, y, z;        ///< counter-clockwise seen from the front
+    bool masked = false;
+    std::size_t count = 0;
+    std::array<std::vector<float>, kMaxCorners> x, y, z; ///< [corner][polygon], counter-clockwise seen from the front
     std::vector<float> normal_x, normal_y, normal_z;
-    std::vector<std::uint32_t> face; ///< see Facets::face_count; bark: of the face that looks to the near end
-    std::vector<std::uint8_t> bark;
-    std::vector<std::int16_t> mask;  ///< index in PatchScene::masks, -1 = solid
-    std::vector<TextureMap> texture; ///< empty when the scene has no masks
+    std::vector<std::uint32_t> face; ///< see Facets::face_count; bark: of the face that looks to the near end, | kBark
+    std::vector<std::int16_t> mask;  ///< index in PatchScene::masks; empty without masks
+    std::vector<TextureMap> texture; ///< empty without masks
+    std::size_t bytes() const;
 };
 
 struct Facets {
-    static constexpr int kMaxCorners = 8;
-
     double scale = 1; ///< scaled = (metres - centre) * scale
     glm::dvec3 centre{0.0};
-    std::vector<PolygonGroup> groups; ///< of 3, 4, ... kMaxCorners corners, those that occur
+    std::vector<PolygonGroup> groups; ///< by corners, then without and with masks; those that occur
     std::vector<Facet> facets;        ///< leaf facets first, then bark facets
     std::uint32_t leaf_facet_count = 0;
     std::vector<std::uint32_t> patch_first_facet; ///< patch count + 1
@@ -69,6 +72,7 @@ struct Facets {
     std::uint32_t face_count() const {
         return leaf_facet_count + 2 * (std::uint32_t(facets.size()) - leaf_facet_count);
     }
+    std::size_t bytes() const;
 };
 
 /// Triangles without area are left out; a patch may end up without facets. Leaf patches must come before bark patches.

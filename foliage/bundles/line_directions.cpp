@@ -56,6 +56,23 @@ std::vector<Cell> coarse_cells(const Image& image) {
     return cells;
 }
 
+/// Scales the radiance of ends [begin, end) so that its mean is that of the light that went to them, which is
+/// flux[2 i + below] of a solid angle.
+void keep_mean(std::size_t begin, std::size_t end, std::size_t below, const std::vector<glm::dvec3>& flux,
+               const std::vector<double>& solid_angle, std::vector<glm::vec3>& radiance) {
+    glm::dvec3 light(0.0), drawn(0.0);
+    double all = 0;
+    for (std::size_t i = begin; i < end; ++i) {
+        light += flux[2 * i + below];
+        all += solid_angle[2 * i + below];
+        drawn += glm::dvec3(radiance[i]) / double(end - begin);
+    }
+    for (glm::length_t c = 0; c < 3; ++c)
+        if (all > 0 && drawn[c] > 0)
+            for (std::size_t i = begin; i < end; ++i)
+                radiance[i][c] *= float(light[c] / all / drawn[c]);
+}
+
 } // namespace
 
 LineDirections make_line_directions(int count, std::uint64_t seed) {
@@ -89,6 +106,8 @@ EndRadiance end_radiance(const Image& remainder, const LineDirections& lines) {
             flux[2 * nearest + below] += cell.flux;
             solid_angle[2 * nearest + below] += cell.solid_angle;
         }
+    // Every line stands for the same solid angle, but the cells that lie nearest to it don't: each half's mean is set
+    // right, so that no light is won or lost.
     for (std::size_t i = 0; i < count; ++i) {
         auto mean = [&](std::size_t end, const glm::vec3& direction) {
             return solid_angle[end] > 0 ? glm::vec3(flux[end] / solid_angle[end])
@@ -96,6 +115,11 @@ EndRadiance end_radiance(const Image& remainder, const LineDirections& lines) {
         };
         radiance.near_end[i] = mean(2 * i, -lines.directions[i]);
         radiance.far_end[i] = mean(2 * i + 1, lines.directions[i]);
+    }
+    for (std::size_t begin : {std::size_t(0), std::size_t(lines.half)}) {
+        const std::size_t end = begin == 0 ? lines.half : count;
+        keep_mean(begin, end, 0, flux, solid_angle, radiance.near_end);
+        keep_mean(begin, end, 1, flux, solid_angle, radiance.far_end);
     }
     return radiance;
 }

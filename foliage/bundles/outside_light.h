@@ -8,10 +8,7 @@ namespace kokage::bundles {
 
 /// The same light estimated from the first half of the directions, from the second, and from all.
 struct SkyLight {
-    struct PerSide {
-        std::vector<Rgb> irradiance;
-        std::vector<float> open, down;
-    };
+    using PerSide = SideLight;
     PerSide halves[2], all;
     glm::vec3 open_ground_irradiance{0.f}; ///< of the upper hemisphere's remainder
     std::vector<glm::vec3> near_radiance;  ///< per link direction

@@ -112,7 +112,7 @@ TEST(BundlesBounceSweeps, AccelerationGoesToTheSamePlaceInFewerSweeps) {
     for (float albedo : {0.9f, 0.99f}) {
         const TracedTree tree(test::random_crown(300, 4, test::grey_leaf(albedo)));
         const OutsideLight outside = tree.outside(test::sky_and_sun());
-        const BounceOperator bounces(tree.scene, tree.transport);
+        BounceOperator bounces(tree.scene, tree.transport);
         SweepLimits limits;
         limits.tolerance = 1e-6;
         const SweepResult accelerated = bounces.solve(outside, tree.scene.optics, limits, {});
@@ -148,7 +148,7 @@ TEST(BundlesBounceSweeps, ResidualsOfPlainSweepsFall) {
 TEST(BundlesBounceSweeps, ANearbyStartNeedsFewSweepsAndEndsTheSame) {
     const TracedTree tree(test::random_crown(300, 3, test::grey_leaf(0.9f)));
     const OutsideLight outside = tree.outside(test::sky_and_sun());
-    const BounceOperator bounces(tree.scene, tree.transport);
+    BounceOperator bounces(tree.scene, tree.transport);
     SweepLimits limits;
     limits.tolerance = 1e-4;
     const SweepResult cold = bounces.solve(outside, tree.scene.optics, limits, {});

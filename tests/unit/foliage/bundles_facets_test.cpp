@@ -19,8 +19,8 @@ std::size_t polygon_count(const Facets& facets) {
 /// Area of polygon i of a group and whether it is convex, counter-clockwise around its normal.
 double polygon_area(const PolygonGroup& group, std::size_t i) {
     auto corner = [&](int k) {
-        const std::size_t at = std::size_t(k % group.corners) * group.stride + i;
-        return glm::dvec3(group.x[at], group.y[at], group.z[at]);
+        const auto c = std::size_t(k % group.corners);
+        return glm::dvec3(group.x[c][i], group.y[c][i], group.z[c][i]);
     };
     const glm::dvec3 normal(group.normal_x[i], group.normal_y[i], group.normal_z[i]);
     glm::dvec3 cross(0.0);
@@ -45,7 +45,7 @@ void add_fan(PatchScene& scene, int corners, float lift = 0) {
 }
 
 TEST(BundlesFacets, FlatFansBecomeOnePolygon) {
-    for (int corners = 3; corners <= Facets::kMaxCorners; ++corners) {
+    for (int corners = 3; corners <= PolygonGroup::kMaxCorners; ++corners) {
         PatchScene scene;
         scene.optics.resize(1);
         add_fan(scene, corners);
