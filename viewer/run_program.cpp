@@ -1,4 +1,5 @@
 #include "common/services/error.h"
+#include "common/services/memory.h"
 #include "common/services/parallel.h"
 #include "viewer/command.h"
 #include "viewer/stop_signal.h"
@@ -97,6 +98,7 @@ int run_command(const Command& command, bool quiet, int threads) {
 } // namespace
 
 int run_program(int argc, const char* const* argv) {
+    keep_freed_memory();
     watch_stop_signals(); // first of all: nobody knows when Ctrl-C comes
     CLI::App program("Fast, accurate shading of trees: the light on every leaf, from the crown's edge to its core.",
                      "kokage");

@@ -1,5 +1,7 @@
 #include "common/services/memory.h"
 
+#include <cstdlib> // defines __GLIBC__
+
 #ifdef __GLIBC__
 #include <malloc.h>
 #endif
@@ -8,7 +10,7 @@ namespace kokage {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 1 << 30);
+    mallopt(M_MMAP_THRESHOLD, 1 << 25); // the most that it takes
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_TOP_PAD, 1 << 26);
 #endif

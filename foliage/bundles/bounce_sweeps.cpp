@@ -240,8 +240,10 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
     if (limits.max_bounces > 0) {
         iterate(outside, optics, limits, 0, result);
     } else {
-        iterate(outside, optics, limits, std::max(limits.tolerance, kEchoTolerance), result);
-        find_echoes(outside, optics, result.radiance);
+        if (limits.remove_echoes) {
+            iterate(outside, optics, limits, std::max(limits.tolerance, kEchoTolerance), result);
+            find_echoes(outside, optics, result.radiance);
+        }
         iterate(outside, optics, limits, limits.tolerance, result);
     }
     for (Rgb& value : result.radiance)

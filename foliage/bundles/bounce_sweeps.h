@@ -28,8 +28,9 @@ struct OutsideLight : SideLight {
 };
 
 struct SweepLimits {
-    double tolerance = 0.005; ///< stop when the light still missing is below this share of the whole
-    int max_bounces = 0;      ///< 0 = until the tolerance; else exactly that many bounces at most
+    double tolerance = 0.005;  ///< stop when the light still missing is below this share of the whole
+    int max_bounces = 0;       ///< 0 = until the tolerance; else exactly that many bounces at most, echoes left in
+    bool remove_echoes = true; ///< see BounceOperator::find_echoes; false for tests
 };
 
 struct SweepResult {

@@ -116,8 +116,8 @@ void BundlesTransport::trace_small_leaves(const BundleTransport& earlier, Progre
 }
 
 std::size_t BundlesTransport::bytes() const {
-    return facets_.bytes() + transport_.bytes() + (lights_ ? lights_->bytes() : 0) + (ray_lights_ ? ray_lights_->bytes() : 0) +
-           (rays_ ? rays_->queries.bytes() + rays_->points.bytes() : 0);
+    return facets_.bytes() + transport_.bytes() + (lights_ ? lights_->bytes() : 0) +
+           (ray_lights_ ? ray_lights_->bytes() : 0) + (rays_ ? rays_->queries.bytes() + rays_->points.bytes() : 0);
 }
 
 /// Adds the lights to what the sky gives to every side.
@@ -327,8 +327,9 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
                                                   const ShadingOptions& options, Progress& progress) {
     const bool adaptive = options.effort == 0;
     // `tree` and `scene` outlive the transport, `options` may not.
-    auto make = [&tree, options, adaptive, albedo = mean_leaf_albedo(scene)](const PatchScene& patches, double uniform_side_error, Reach& reach,
-                                           Progress& stop) -> std::unique_ptr<Transport> {
+    auto make = [&tree, options, adaptive,
+                 albedo = mean_leaf_albedo(scene)](const PatchScene& patches, double uniform_side_error, Reach& reach,
+                                                   Progress& stop) -> std::unique_ptr<Transport> {
         const double sampling_error = sampling_error_for(options.error, uniform_side_error);
         BundleEffort effort = effort_of_directions(
             adaptive ? directions_for_error(sampling_error, albedo) : options.effort, albedo, options.seed);
