@@ -117,8 +117,8 @@ HalvesResult BounceOperator::scatter_by_halves(const SideLight (&outside)[2], co
 }
 
 /// What lines echo. A line from i to j stands in both rows, so light that went along it comes back along it more often
-/// than chance would have it, and crowns of little absorption turn out too bright by O(1 / lines). To first order: each
-/// row ought to see its neighbour's radiance as the neighbour's other lines give it.
+/// than chance would have it, and crowns of little absorption come out wrong by O(1 / lines). To first order: each row
+/// ought to see its neighbour's radiance as the neighbour's other lines give it.
 void BounceOperator::find_echoes(const OutsideLight& outside, const std::vector<Optics>& optics,
                                  const std::vector<Rgb>& radiance) {
     const Links& links = transport_.links;
@@ -219,7 +219,7 @@ bool BounceOperator::iterate(const OutsideLight& outside, const std::vector<Opti
         // Dense clusters fill slowly when hardly anything absorbs: the largest change must be small against the
         // absorption, too.
         const bool done =
-            !plain && missing < tolerance && residual < tolerance * std::clamp(20 * (1 - albedo), 0.025, 2.0);
+            !plain && missing < tolerance && residual < tolerance * std::clamp(8 * (1 - albedo), 0.025, 2.0);
         if (accelerate && !done && sweep + 1 < most)
             acceleration.advance(result.radiance, next, products);
         else

@@ -78,6 +78,9 @@ const DrawnLights::Distant& DrawnLights::draw(const DistantLight& light, const L
     if (light.texels.empty())
         drawn.light.irradiance = glm::vec3(1.f);
     drawn.beams = make_beams(drawn.light, effort.beams, seed);
+    for (Beam& beam : drawn.beams)
+        if (ground_ && beam.direction_to_light.y <= 0) // the ground is in the way
+            beam.irradiance = glm::vec3(0.f);
     std::vector<glm::vec3> directions;
     for (const Beam& beam : drawn.beams)
         directions.push_back(beam.direction_to_light);
@@ -143,6 +146,8 @@ void DrawnLights::light_points(const Environment& environment, const BundleEffor
     std::vector<PointTransfer> kept;
     std::uint64_t rays = 0;
     for (const PointLight& light : environment.point_lights) {
+        if (scene_.ground && light.position.y <= scene_.ground->height_m)
+            continue; // the ground is in the way
         const auto found = std::find_if(points_.begin(), points_.end(),
                                         [&](const PointTransfer& p) { return p.position == light.position; });
         if (found != points_.end()) {

@@ -171,11 +171,11 @@ TEST(Bundles, RelightingGivesWhatAFreshSolveGives) {
                                  shade(small, environment, bundles_options(40)).radiance),
               kTolerance);
     environment.distant_lights.clear();
-    transport->set_optics({test::bright_leaf()});
-    test::SmallTree bright = small;
-    bright.scene.optics = {test::bright_leaf()};
+    const auto fresh = make_transport(small.scene, small.tree, bundles_options(40), silent_progress());
+    for (Transport* repainted : {transport.get(), fresh.get()})
+        repainted->set_optics({test::bright_leaf()});
     EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 shade(bright, environment, bundles_options(40)).radiance),
+                                 fresh->solve(environment, silent_progress()).radiance),
               kTolerance);
 }
 
@@ -189,6 +189,19 @@ TEST(Bundles, ADarkChannelOfALightComesBack) {
     EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
                                  shade(small, environment, bundles_options(20)).radiance),
               0.003);
+}
+
+TEST(Bundles, TheGroundHidesLightsBelowTheHorizon) {
+    test::SmallTree small = test::ball_on_a_skeleton(100, 2, test::realistic_leaf());
+    small.scene.ground = Ground{};
+    Environment environment = test::constant_environment(glm::vec3(0));
+    environment.distant_lights = test::sky_and_sun().distant_lights;
+    environment.distant_lights[0].direction = glm::normalize(glm::vec3(1, -0.5f, 0));
+    environment.point_lights = {{"buried", {0, -1, 0}, glm::vec3(1)}};
+    const Solution solution = shade(small, environment, bundles_options(20));
+    EXPECT_EQ(solution.energy_in, 0);
+    for (const glm::vec3& radiance : solution.radiance.front)
+        EXPECT_EQ(radiance, glm::vec3(0));
 }
 
 // A light that was too weak to be drawn with care may be the sun at the next solve.
