@@ -12,10 +12,6 @@ namespace kokage::bundles {
 namespace {
 
 constexpr std::size_t kSideBlock = 4096;
-/// A correction of a percent or so: a quarter of the links tells it well enough.
-constexpr RowPart kEchoRows = RowPart::first_quarter;
-/// What is still missing when the echoes are taken out: what comes later changes them by as little.
-constexpr double kEchoTolerance = 0.02;
 /// Share of light that bounces hand on from which acceleration pays.
 constexpr double kStrongBounces = 0.4;
 
@@ -93,8 +89,8 @@ void BounceOperator::add_ground(const SideLight& outside, const std::vector<Rgb>
     });
 }
 
-const LinkWeights& BounceOperator::weights_for(const std::vector<float>& open) {
-    if (weighed_open_ != open || weights_.whole.size() != open.size()) {
+const std::vector<float>& BounceOperator::weights_for(const std::vector<float>& open) {
+    if (weighed_open_ != open || weights_.size() != open.size()) {
         weights_ = link_weights(transport_.links, open);
         weighed_open_ = open;
     }
@@ -116,51 +112,11 @@ HalvesResult BounceOperator::scatter_by_halves(const SideLight (&outside)[2], co
     return result;
 }
 
-/// What lines echo. A line from i to j stands in both rows, so light that went along it comes back along it more often
-/// than chance would have it, and crowns of little absorption come out wrong by O(1 / lines). To first order: each row
-/// ought to see its neighbour's radiance as the neighbour's other lines give it.
-void BounceOperator::find_echoes(const OutsideLight& outside, const std::vector<Optics>& optics,
-                                 const std::vector<Rgb>& radiance) {
-    const Links& links = transport_.links;
-    const std::size_t sides = radiance.size();
-    const std::span<const float> weight = weights_for(outside.open).of(kEchoRows);
-    // What one line adds to a side's radiance, by share of the row: k = rho (1 - open) / (lines - 1), and the row's
-    // mean m.
-    std::vector<Rgb>&echo = scratch_[0], &echo_mean = scratch_[1];
-    echo.resize(sides);
-    echo_mean.resize(sides);
-    parallel_blocks(sides, kSideBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t side = from; side < to; ++side) {
-            const std::uint32_t lines = links.begin[side + 1] - links.begin[side];
-            const float closed = 1 - outside.open[side];
-            echo[side] = echo_mean[side] = Rgb();
-            if (lines < 2 || !(closed > 0))
-                continue;
-            const glm::vec3 mean =
-                weight[side] / (kPi * closed) * neighbour_sum(links, kEchoRows, Side(side), radiance).vec();
-            const glm::vec3 share = optics[scene_.patches[side / 2].optics].reflectance * (closed / float(lines - 1));
-            echo[side] = Rgb::from(share);
-            echo_mean[side] = Rgb::from(share * mean);
-        }
-    });
-    clear_ray_sides(transport_.rays, echo);
-    clear_ray_sides(transport_.rays, echo_mean);
-    echoes_.resize(sides);
-    parallel_blocks(sides, kSideBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t side = from; side < to; ++side) {
-            const NeighbourSums sums = neighbour_sums(links, kEchoRows, Side(side), echo_mean, echo);
-            echoes_[side] = Rgb::from(weight[side] * (sums.first.vec() - sums.second.vec() * radiance[side].vec()));
-        }
-    });
-    clear_ray_sides(transport_.rays, echoes_);
-    scatter_outside(scene_, optics, echoes_, echoes_);
-}
-
 void BounceOperator::spread(const std::vector<float>& open, const std::vector<Optics>& optics,
                             std::vector<Rgb>& difference) {
     std::vector<Rgb>& sum = scratch_[0];
     sum.resize(difference.size());
-    scatter(scene_, transport_.links, optics, RowPart::whole, weights_for(open), difference, difference, sum);
+    scatter(scene_, transport_.links, optics, weights_for(open), difference, difference, sum);
     std::swap(difference, sum);
 }
 
@@ -181,16 +137,11 @@ void BounceOperator::emit(const OutsideLight& outside, const std::vector<Optics>
         add_ground(outside, result.from_ground, irradiance);
         scatter_outside(scene_, optics, irradiance, emitted);
     }
-    if (!echoes_.empty())
-        parallel_blocks(emitted.size(), kSideBlock, [&](std::size_t from, std::size_t to) {
-            for (std::size_t side = from; side < to; ++side)
-                emitted[side] = Rgb::from(emitted[side].vec() + echoes_[side].vec());
-        });
 }
 
-/// Sweeps until what is missing is below the tolerance; false if that took too many sweeps.
-bool BounceOperator::iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
-                             double tolerance, SweepResult& result) {
+/// Sweeps until what is missing is below the tolerance.
+void BounceOperator::iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
+                             SweepResult& result) {
     constexpr int kMostSweeps = 1000;
     // After these, what the tree sends to the ground is right within a few percent of little.
     constexpr int kGroundSweeps = 2;
@@ -198,18 +149,18 @@ bool BounceOperator::iterate(const OutsideLight& outside, const std::vector<Opti
     const double albedo = largest_albedo(optics), survival = std::min(mean_survival(outside, optics), 0.95);
     const bool accelerate = !plain && survival > kStrongBounces; // where little bounces, plain sweeps are as few
     const int most = plain ? limits.max_bounces : kMostSweeps;
-    const LinkWeights& weights = weights_for(outside.open);
+    const std::vector<float>& weights = weights_for(outside.open);
     std::vector<Rgb>&emitted = scratch_[0], &next = scratch_[1];
     next.resize(result.radiance.size());
     AndersonAcceleration acceleration;
     for (int sweep = 0; sweep < most; ++sweep) {
-        const bool ground = transport_.ground && (plain || (echoes_.empty() ? sweep < kGroundSweeps : sweep == 0));
+        const bool ground = transport_.ground && (plain || sweep < kGroundSweeps);
         if (ground || sweep == 0)
             emit(outside, optics, result, ground);
         const SweepHistory history = acceleration.history();
         HistoryProducts products;
-        const RadianceChange change = scatter(scene_, transport_.links, optics, RowPart::whole, weights,
-                                              result.radiance, emitted, next, &history, &products);
+        const RadianceChange change =
+            scatter(scene_, transport_.links, optics, weights, result.radiance, emitted, next, &history, &products);
         const double residual = change.largest_radiance > 0 ? change.largest / change.largest_radiance : 0.0;
         result.residuals.push_back(residual);
         double missing = 0;
@@ -218,16 +169,15 @@ bool BounceOperator::iterate(const OutsideLight& outside, const std::vector<Opti
                 missing = std::max(missing, change.total[c] / change.total_radiance[c] * survival / (1 - survival));
         // Dense clusters fill slowly when hardly anything absorbs: the largest change must be small against the
         // absorption, too.
-        const bool done =
-            !plain && missing < tolerance && residual < tolerance * std::clamp(8 * (1 - albedo), 0.025, 2.0);
+        const bool done = !plain && missing < limits.tolerance &&
+                          residual < limits.tolerance * std::clamp(16 * (1 - albedo), 0.025, 2.0);
         if (accelerate && !done && sweep + 1 < most)
             acceleration.advance(result.radiance, next, products);
         else
             std::swap(result.radiance, next);
         if (done)
-            return true;
+            return;
     }
-    return plain;
 }
 
 SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector<Optics>& optics,
@@ -236,16 +186,7 @@ SweepResult BounceOperator::solve(const OutsideLight& outside, const std::vector
     result.radiance = start.size() == outside.irradiance.size() ? start : std::vector<Rgb>(outside.irradiance.size());
     if (result.radiance.empty())
         return result;
-    echoes_.clear();
-    if (limits.max_bounces > 0) {
-        iterate(outside, optics, limits, 0, result);
-    } else {
-        if (limits.remove_echoes) {
-            iterate(outside, optics, limits, std::max(limits.tolerance, kEchoTolerance), result);
-            find_echoes(outside, optics, result.radiance);
-        }
-        iterate(outside, optics, limits, limits.tolerance, result);
-    }
+    iterate(outside, optics, limits, result);
     for (Rgb& value : result.radiance)
         value = Rgb::from(glm::max(value.vec(), 0.f));
     return result;

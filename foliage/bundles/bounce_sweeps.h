@@ -28,9 +28,8 @@ struct OutsideLight : SideLight {
 };
 
 struct SweepLimits {
-    double tolerance = 0.005;  ///< stop when the light still missing is below this share of the whole
-    int max_bounces = 0;       ///< 0 = until the tolerance; else exactly that many bounces at most, echoes left in
-    bool remove_echoes = true; ///< see BounceOperator::find_echoes; false for tests
+    double tolerance = 0.005; ///< stop when the light still missing is below this share of the whole
+    int max_bounces = 0;      ///< 0 = until the tolerance; else exactly that many bounces at most
 };
 
 struct SweepResult {
@@ -66,18 +65,16 @@ class BounceOperator {
     std::vector<glm::vec3> light_ground(const OutsideLight& outside, const std::vector<Rgb>& radiance) const;
     std::vector<Rgb> gather_ground(const std::vector<glm::vec3>& ground_excess) const;
     void add_ground(const SideLight& outside, const std::vector<Rgb>& from_ground, std::vector<Rgb>& irradiance) const;
-    void find_echoes(const OutsideLight& outside, const std::vector<Optics>& optics, const std::vector<Rgb>& radiance);
-    bool iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
-                 double tolerance, SweepResult& result);
+    void iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
+                 SweepResult& result);
     void emit(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& result, bool ground);
-    const LinkWeights& weights_for(const std::vector<float>& open);
+    const std::vector<float>& weights_for(const std::vector<float>& open);
 
     const PatchScene& scene_;
     const BundleTransport& transport_;
     std::vector<float> ground_links_; ///< per side: number of links to the ground
     std::vector<float> weighed_open_; ///< what weights_ were made for
-    LinkWeights weights_;
-    std::vector<Rgb> echoes_;     ///< per side: radiance that lines echo wrongly, to be taken out; empty = unknown
+    std::vector<float> weights_;
     std::vector<Rgb> scratch_[3]; ///< per side
 };
 

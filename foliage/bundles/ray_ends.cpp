@@ -72,9 +72,4 @@ void sum_ray_open_directions(const RayLinks& rays, const Facets& facets, std::sp
     }
 }
 
-void clear_ray_sides(const RayLinks& rays, std::span<Rgb> sides) {
-    for (std::uint32_t patch : rays.patches)
-        sides[2 * patch] = sides[2 * patch + 1] = Rgb();
-}
-
 } // namespace kokage::bundles

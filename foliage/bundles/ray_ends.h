@@ -16,7 +16,4 @@ void gather_ray_ground(const RayLinks& rays, std::span<const glm::vec3> ground_e
 /// Sums of the directions in which both sides of the patches see the sky, in units of the patch's area.
 void sum_ray_open_directions(const RayLinks& rays, const Facets& facets, std::span<glm::vec3> sums);
 
-/// Zeroes the values of the patches' sides: their rows hold no lines that come back.
-void clear_ray_sides(const RayLinks& rays, std::span<Rgb> sides);
-
 } // namespace kokage::bundles

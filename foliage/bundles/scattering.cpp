@@ -17,10 +17,8 @@ struct Row {
     const Side *begin, *end;
 };
 
-HWY_INLINE Row row_of(const Links& links, std::size_t side, RowPart part) {
-    const std::uint32_t begin = links.begin[side], end = links.begin[side + 1];
-    return {links.neighbours.data() + begin,
-            links.neighbours.data() + (part == RowPart::whole ? end : begin + (end - begin + 3) / 4)};
+HWY_INLINE Row row_of(const Links& links, std::size_t side) {
+    return {links.neighbours.data() + links.begin[side], links.neighbours.data() + links.begin[side + 1]};
 }
 
 /// Sum of the neighbours' values over part of a row.
@@ -54,17 +52,11 @@ std::vector<PatchOptics> over_pi(const std::vector<Optics>& optics) {
 
 } // namespace
 
-LinkWeights link_weights(const Links& links, std::span<const float> open) {
-    LinkWeights weights;
-    weights.whole.resize(open.size());
-    weights.first_quarter.resize(open.size());
+std::vector<float> link_weights(const Links& links, std::span<const float> open) {
+    std::vector<float> weights(open.size());
     parallel_blocks(open.size(), 2 * kPatchBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t side = from; side < to; ++side) {
-            const std::uint32_t count = links.begin[side + 1] - links.begin[side];
-            const float closed = kPi * (1 - open[side]);
-            weights.whole[side] = closed / float(std::max(count, 1u));
-            weights.first_quarter[side] = closed / float(std::max((count + 3) / 4, 1u));
-        }
+        for (std::size_t side = from; side < to; ++side)
+            weights[side] = kPi * (1 - open[side]) / float(std::max(links.begin[side + 1] - links.begin[side], 1u));
     });
     return weights;
 }
@@ -118,11 +110,10 @@ struct ProductSums {
 
 } // namespace
 
-RadianceChange scatter(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics, RowPart part,
-                       const LinkWeights& weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
+RadianceChange scatter(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
+                       std::span<const float> weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
                        std::span<Rgb> scattered, const SweepHistory* history, HistoryProducts* products) {
     const std::vector<PatchOptics> of_patches = over_pi(optics);
-    const std::span<const float> weight = weights.of(part);
     const bool remember = history && !history->read[0].empty();
     struct Block {
         RadianceChange change;
@@ -137,7 +128,7 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
             Vec irradiance[2];
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::size_t side = 2 * patch + k;
-                irradiance[k] = hn::Mul(sum_row(row_of(links, side, part), radiance.data()), hn::Set(d, weight[side]));
+                irradiance[k] = hn::Mul(sum_row(row_of(links, side), radiance.data()), hn::Set(d, weights[side]));
             }
             const PatchOptics& optic = of_patches[scene.patches[patch].optics];
             const auto r = hn::Load(d, optic.reflectance), t = hn::Load(d, optic.transmittance);
@@ -223,22 +214,6 @@ void scatter_halves(const PatchScene& scene, const Links& links, const std::vect
                           &half_difference[2 * patch + k].r);
         }
     });
-}
-
-Rgb neighbour_sum(const Links& links, RowPart part, Side side, std::span<const Rgb> values) {
-    Rgb sum;
-    hn::Store(sum_row(row_of(links, side, part), values.data()), Rgb4(), &sum.r);
-    return sum;
-}
-
-NeighbourSums neighbour_sums(const Links& links, RowPart part, Side side, std::span<const Rgb> first,
-                             std::span<const Rgb> second) {
-    const Rgb4 d;
-    const Row row = row_of(links, side, part);
-    NeighbourSums sums;
-    hn::Store(sum_row(row, first.data()), d, &sums.first.r);
-    hn::Store(sum_row(row, second.data()), d, &sums.second.r);
-    return sums;
 }
 
 } // namespace kokage::bundles

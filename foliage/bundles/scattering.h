@@ -14,16 +14,9 @@ struct alignas(16) Rgb {
     static Rgb from(const glm::vec3& v) { return {v.x, v.y, v.z, 0}; }
 };
 
-/// Which links of every row are followed. A quarter of them is enough for small corrections.
-enum class RowPart { whole, first_quarter };
-
-/// What one link of a side brings it: pi (1 - open) / links followed, where open is the share of the side's
+/// What one link of a side brings it, per side: pi (1 - open) / links, where open is the share of the side's
 /// cosine-weighted hemisphere that links don't fill.
-struct LinkWeights {
-    std::vector<float> whole, first_quarter; ///< per side
-    std::span<const float> of(RowPart part) const { return part == RowPart::whole ? whole : first_quarter; }
-};
-LinkWeights link_weights(const Links& links, std::span<const float> open);
+std::vector<float> link_weights(const Links& links, std::span<const float> open);
 
 /// How two radiances differ, all sides together.
 struct RadianceChange {
@@ -45,8 +38,8 @@ struct HistoryProducts {
 /// One scattering of `radiance` along the links, added to what sides emit (light from outside, scattered once; empty =
 /// none). All arrays are per side. Returns how the result differs from `radiance`. With a history of at least one
 /// sweep, `products` receives its inner products.
-RadianceChange scatter(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics, RowPart part,
-                       const LinkWeights& weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
+RadianceChange scatter(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
+                       std::span<const float> weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
                        std::span<Rgb> scattered, const SweepHistory* history = nullptr,
                        HistoryProducts* products = nullptr);
 
@@ -65,14 +58,5 @@ struct HalfLight {
 void scatter_halves(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
                     std::span<const Rgb> radiance, const HalfLight (&halves)[2], std::span<Rgb> half_difference,
                     std::span<Rgb> mean_irradiance);
-
-/// Sum over a side's links (of `part` of its row).
-Rgb neighbour_sum(const Links& links, RowPart part, Side side, std::span<const Rgb> values);
-/// The same of two quantities at once.
-struct NeighbourSums {
-    Rgb first, second;
-};
-NeighbourSums neighbour_sums(const Links& links, RowPart part, Side side, std::span<const Rgb> first,
-                             std::span<const Rgb> second);
 
 } // namespace kokage::bundles

@@ -68,7 +68,7 @@ TEST_F(BundlesLeafShading, ErrorHalvesWithFourTimesTheDirections) {
     EXPECT_NEAR(many.accuracy.mre, 0.0162, 0.003); // the reference's noise of 1.0 % is in it
     for (const Judged& judged : {few, some, many})
         expect_honest(judged, *reference);
-    EXPECT_NEAR(many.accuracy.bias, 0, 0.005) << "echoes are taken out";
+    EXPECT_NEAR(many.accuracy.bias, 0, 0.005);
 }
 
 // The same for other seeds: the figures above are no luck.
