@@ -49,13 +49,20 @@ struct HalvesResult {
 class BounceOperator {
   public:
     BounceOperator(const PatchScene& scene, const BundleTransport& transport);
-    /// Iterates from the first scattering of the outside light (or from `start`, if it is as long).
+    /// Iterates from `start` if it is as long, else from a guess; from black when bounces are counted.
     SweepResult solve(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
                       const std::vector<Rgb>& start);
     /// One more scattering with the neighbours and the outside light of each half of the directions.
     HalvesResult scatter_by_halves(const SideLight (&outside)[2], const std::vector<Optics>& optics,
                                    const SweepResult& light);
 
+    /// Scales what has bounced so that its mean is free of what lines shared between bounces add. i sees j along a
+    /// line, and the same line tells what j sees: i itself, and what lies behind j. Of the directions that light takes
+    /// to i through j these are too large a part, O(1 / lines), so crowns of little absorption come out a little too
+    /// bright. With the rows K_A, K_B of the halves and D half of what they make differ, a bounce has -1/2 (K_A - K_B)
+    /// D too much or too little: in K_A X_B and K_B X_A no line is used twice.
+    void remove_shared_lines(const SideLight (&outside)[2], const std::vector<Optics>& optics,
+                             const std::vector<Rgb>& half_difference, SweepResult& light);
     /// Adds to a difference between two solutions its first scattering: what an error does to the light around it.
     void spread(const std::vector<float>& open, const std::vector<Optics>& optics, std::vector<Rgb>& difference);
     /// The share of light that a bounce hands on, at most: the largest albedo times the mean closed share.
@@ -67,6 +74,7 @@ class BounceOperator {
     void add_ground(const SideLight& outside, const std::vector<Rgb>& from_ground, std::vector<Rgb>& irradiance) const;
     void iterate(const OutsideLight& outside, const std::vector<Optics>& optics, const SweepLimits& limits,
                  SweepResult& result);
+    void guess(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& result);
     void emit(const OutsideLight& outside, const std::vector<Optics>& optics, SweepResult& result, bool ground);
     const std::vector<float>& weights_for(const std::vector<float>& open);
 
@@ -75,7 +83,8 @@ class BounceOperator {
     std::vector<float> ground_links_; ///< per side: number of links to the ground
     std::vector<float> weighed_open_; ///< what weights_ were made for
     std::vector<float> weights_;
-    std::vector<Rgb> scratch_[3]; ///< per side
+    std::vector<Rgb> emitted_;    ///< per side, by the last solve(): light from outside, scattered once
+    std::vector<Rgb> scratch_[2]; ///< per side
 };
 
 } // namespace kokage::bundles

@@ -21,7 +21,7 @@ glm::vec2 grid_jitter(std::uint64_t seed, std::size_t direction) {
 }
 
 std::uint8_t fraction(std::uint32_t open, std::uint32_t of) {
-    return of == 0 ? OpenFractions::kUnseen : std::uint8_t((open * 508ull + of) / (2ull * of));
+    return of == 0 ? OpenFractions::kUnseen : std::uint8_t(float(open) / float(of) * 254 + 0.5f);
 }
 
 /// Turns a raster's counts into one row of open fractions.

@@ -166,6 +166,8 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
         bounces_->solve(lit.outside, optics_, limits, limits.max_bounces > 0 ? std::vector<Rgb>() : last_radiance_);
     stage("bounces");
     HalvesResult halves = bounces_->scatter_by_halves(sky.halves, optics_, lit.light);
+    if (options_.max_bounces == 0)
+        bounces_->remove_shared_lines(sky.halves, optics_, halves.half_difference, lit.light);
     bounces_->spread(lit.outside.open, optics_, halves.half_difference); // errors bounce, too
     lit.half_differences = std::move(halves.half_difference);
     lit.sampling_error = half_difference_error(scene_, lit.light.radiance, lit.half_differences);
@@ -334,7 +336,7 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
         BundleEffort effort = effort_of_directions(
             adaptive ? directions_for_error(sampling_error, albedo) : options.effort, albedo, options.seed);
         effort.uniform_side_error = uniform_side_error;
-        effort.tolerance = std::min(effort.tolerance, 0.04 * options.error);
+        effort.tolerance = std::min(effort.tolerance, 0.06 * options.error);
         return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, stop, &tree, &reach);
     };
     auto whole = [make, &scene](Reach& reach, Progress& stop) { return make(scene, kUniformSideError, reach, stop); };

@@ -11,6 +11,7 @@ namespace {
 // sampling error of 5.5 %.
 constexpr double kReferenceDirections[2] = {42, 13}, kReferenceError = 0.055;
 constexpr double kSkyShare[2] = {9.0 / 20, 3.0 / 20};
+constexpr double kLightSamples[2] = {2.4, 3.2}; // a direction
 constexpr double kDarkAlbedo = 0.3, kBrightAlbedo = 0.9;
 constexpr int kLeastDirections = 10, kMostDirections = 20480;
 
@@ -53,7 +54,8 @@ BundleEffort effort_of_directions(int directions, double leaf_albedo, std::uint6
     effort.lines.sky_directions = std::max(2, int(directions * sky_share) / 2 * 2);
     effort.lines.link_directions = std::max(2, (directions - effort.lines.sky_directions) / 2 * 2);
     effort.lines.seed = seed;
-    effort.light_samples = std::max(16, directions * 12 / 5);
+    effort.light_samples =
+        std::max(16, int(directions * std::lerp(kLightSamples[0], kLightSamples[1], brightness(leaf_albedo))));
     return effort;
 }
 

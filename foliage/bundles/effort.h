@@ -15,7 +15,7 @@ struct BundleEffort {
     bundles::BundleSettings lines;
     int light_samples =
         256; ///< pixels a leaf, over all beams of one light that gives all the light; lights share them by irradiance
-    double tolerance = 0.002;                      ///< of the sweeps
+    double tolerance = 0.003;                      ///< of the sweeps
     double uniform_side_error = kUniformSideError; ///< assumed where it is not measured
 };
 

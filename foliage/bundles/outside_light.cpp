@@ -108,7 +108,7 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
     }
     sky.near_radiance = link_ends.near_end;
 
-    std::vector<EndSums> sums[2];
+    std::vector<EndSums> sums[2], all(facets.facets.size());
     for (int h = 0; h < 2; ++h) {
         sums[h].resize(facets.facets.size());
         auto gather = [&](const LineDirections& lines, const OpenFractions& open, const EndRadiance& ends) {
@@ -121,22 +121,19 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
     const std::size_t sides = 2 * scene.patches.size();
     for (SkyLight::PerSide* part : {&sky.halves[0], &sky.halves[1], &sky.all})
         resize(*part, sides);
+    // A patch's facets are added up for each half and, the sums' sums, for all.
     parallel_blocks(scene.patches.size(), 4096, [&](std::size_t from, std::size_t to) {
-        for (std::size_t patch = from; patch < to; ++patch)
+        for (std::size_t patch = from; patch < to; ++patch) {
             for (int h = 0; h < 2; ++h)
                 store_patch(facets, sums[h], std::uint32_t(patch), sky.halves[h]);
+            for (std::uint32_t f = facets.patch_first_facet[patch]; f < facets.patch_first_facet[patch + 1]; ++f)
+                all[f] = sums[0][f] + sums[1][f];
+            store_patch(facets, all, std::uint32_t(patch), sky.all);
+        }
     });
     for (int h = 0; h < 2; ++h)
         fill_unseen(facets, sums[h], sky.halves[h]);
-    parallel_blocks(sums[0].size(), 4096, [&](std::size_t from, std::size_t to) {
-        for (std::size_t f = from; f < to; ++f)
-            sums[0][f] = sums[0][f] + sums[1][f];
-    });
-    parallel_blocks(scene.patches.size(), 4096, [&](std::size_t from, std::size_t to) {
-        for (std::size_t patch = from; patch < to; ++patch)
-            store_patch(facets, sums[0], std::uint32_t(patch), sky.all);
-    });
-    fill_unseen(facets, sums[0], sky.all);
+    fill_unseen(facets, all, sky.all);
     gather_ray_ends(transport, remainder, ground_radiance, sky);
     return sky;
 }

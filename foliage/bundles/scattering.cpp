@@ -11,7 +11,6 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 using Rgb4 = hn::FixedTag<float, 4>; // one side; every instruction set has vectors of four
 using Vec = hn::Vec<Rgb4>;
-constexpr std::size_t kPatchBlock = 2048;
 
 struct Row {
     const Side *begin, *end;
@@ -54,7 +53,7 @@ std::vector<PatchOptics> over_pi(const std::vector<Optics>& optics) {
 
 std::vector<float> link_weights(const Links& links, std::span<const float> open) {
     std::vector<float> weights(open.size());
-    parallel_blocks(open.size(), 2 * kPatchBlock, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(open.size(), 2 * kSweepBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t side = from; side < to; ++side)
             weights[side] = kPi * (1 - open[side]) / float(std::max(links.begin[side + 1] - links.begin[side], 1u));
     });
@@ -119,8 +118,8 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
         RadianceChange change;
         HistoryProducts products;
     };
-    std::vector<Block> blocks((scene.patches.size() + kPatchBlock - 1) / kPatchBlock);
-    parallel_blocks(scene.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
+    std::vector<Block> blocks((scene.patches.size() + kSweepBlock - 1) / kSweepBlock);
+    parallel_blocks(scene.patches.size(), kSweepBlock, [&](std::size_t from, std::size_t to) {
         const Rgb4 d;
         ChangeSums change;
         ProductSums sums;
@@ -144,7 +143,7 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
                 hn::Store(result, d, &scattered[side].r);
             }
         }
-        blocks[from / kPatchBlock] = {change.change(), sums.products()};
+        blocks[from / kSweepBlock] = {change.change(), sums.products()};
     });
     RadianceChange all;
     HistoryProducts all_products;
@@ -167,7 +166,7 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
 void scatter_outside(const PatchScene& scene, const std::vector<Optics>& optics, std::span<const Rgb> irradiance,
                      std::span<Rgb> radiance) {
     const std::vector<PatchOptics> of_patches = over_pi(optics);
-    parallel_blocks(scene.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(scene.patches.size(), kSweepBlock, [&](std::size_t from, std::size_t to) {
         const Rgb4 d;
         for (std::size_t patch = from; patch < to; ++patch) {
             const PatchOptics& optic = of_patches[scene.patches[patch].optics];
@@ -181,9 +180,11 @@ void scatter_outside(const PatchScene& scene, const std::vector<Optics>& optics,
 
 void scatter_halves(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
                     std::span<const Rgb> radiance, const HalfLight (&halves)[2], std::span<Rgb> half_difference,
-                    std::span<Rgb> mean_irradiance) {
+                    std::span<Rgb> mean_irradiance, std::size_t stride) {
     const std::vector<PatchOptics> of_patches = over_pi(optics);
-    parallel_blocks(scene.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(scene.patches.size(), kSweepBlock, [&](std::size_t from, std::size_t to) {
+        if (from / kSweepBlock % stride != 0)
+            return;
         const Rgb4 d;
         const auto half = hn::Set(d, 0.5f);
         for (std::size_t patch = from; patch < to; ++patch) {
@@ -202,7 +203,8 @@ void scatter_halves(const PatchScene& scene, const Links& links, const std::vect
                     const float closed = kPi * (1 - halves[h].open[side]);
                     irradiance[h] = both ? hn::Mul(sums[h], hn::Set(d, closed / float(rows[h].end - rows[h].begin)))
                                          : hn::Mul(hn::Add(sums[0], sums[1]), hn::Set(d, closed * all));
-                    irradiance[h] = hn::Add(irradiance[h], hn::Load(d, &halves[h].irradiance[side].r));
+                    if (!halves[h].irradiance.empty())
+                        irradiance[h] = hn::Add(irradiance[h], hn::Load(d, &halves[h].irradiance[side].r));
                 }
                 difference[k] = hn::Mul(half, hn::Sub(irradiance[0], irradiance[1]));
                 hn::Store(hn::Mul(half, hn::Add(irradiance[0], irradiance[1])), d, &mean_irradiance[side].r);

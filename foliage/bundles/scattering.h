@@ -49,14 +49,15 @@ void scatter_outside(const PatchScene& scene, const std::vector<Optics>& optics,
 
 /// What one half of the directions knows of light from outside; per side.
 struct HalfLight {
-    std::span<const Rgb> irradiance;
+    std::span<const Rgb> irradiance; ///< empty = none
     std::span<const float> open;
 };
 /// Two scatterings of `radiance`, each with the neighbours of one half of the directions and with its own light from
 /// outside (a half without neighbours makes do with both). Written are half the difference of the radiances and the
-/// mean irradiance.
+/// mean irradiance. Only every `stride`-th block of kSweepBlock patches is done; the others are left as they are.
+inline constexpr std::size_t kSweepBlock = 2048;
 void scatter_halves(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
                     std::span<const Rgb> radiance, const HalfLight (&halves)[2], std::span<Rgb> half_difference,
-                    std::span<Rgb> mean_irradiance);
+                    std::span<Rgb> mean_irradiance, std::size_t stride = 1);
 
 } // namespace kokage::bundles

@@ -33,8 +33,9 @@ std::vector<PlannedScene> quick_plan() {
     return {
         // efforts on both sides of 6 % of error
         {{sky_sun, 30000, realistic},
-         Efforts().bundles({16, 24, 32, 40, 48}).paths({64, 80}).light_maps({15}).paper({15})},
-        {{sky_sun, 30000, bright}, Efforts().bundles({12, 16, 20, 32}).paths({32, 64}).light_maps({15}).paper({15})},
+         Efforts().bundles({16, 24, 32, 36, 40, 48}).paths({64, 80}).light_maps({15}).paper({15})},
+        {{sky_sun, 30000, bright},
+         Efforts().bundles({8, 10, 12, 14, 16, 20}).paths({32, 64}).light_maps({15}).paper({15})},
         {{lamp_lit, 30000, realistic}, Efforts().bundles({16, 32, 48}).paths({64})},
         {{furnace, 30000, BenchMaterial::white}, Efforts().bundles({32})},
         {{sky_sun, 5000, realistic}, Efforts().bundles({32}).paths({64}).light_maps({15}).paper({15})},
@@ -49,7 +50,7 @@ std::vector<PlannedScene> full_plan() {
         for (BenchMaterial material : {realistic, bright}) {
             plan.push_back({{light, 30000, material},
                             Efforts()
-                                .bundles({8, 12, 16, 24, 32, 40, 48, 64, 128})
+                                .bundles({8, 10, 12, 14, 16, 24, 32, 36, 40, 48, 64, 128})
                                 .asked({0.1, 0.05, 0.03})
                                 .paths({16, 32, 64, 80, 128, 256})
                                 .light_maps({15, 100})
