@@ -11,7 +11,7 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 using Rgb4 = hn::FixedTag<float, 4>;
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kBlock = 1 << 17; // waking a thread for less costs more than it saves
 
 /// The weights that make |f0 - w1 d1 - w2 d2| least, per channel. Steps that no longer differ get no weight instead of
 /// a huge one.

@@ -11,7 +11,8 @@
 namespace kokage::bundles {
 namespace {
 
-constexpr std::size_t kSideBlock = 4096;
+/// Sides: waking a thread for less costs more than it saves.
+constexpr std::size_t kSideBlock = 1 << 17;
 /// Share of light that bounces hand on from which acceleration pays.
 constexpr double kStrongBounces = 0.4;
 
@@ -228,7 +229,7 @@ void BounceOperator::iterate(const OutsideLight& outside, const std::vector<Opti
         // Dense clusters fill slowly when hardly anything absorbs: the largest change must be small against the
         // absorption, too.
         const bool done =
-            !plain && missing < tolerance && residual < tolerance * std::clamp(10 * (1 - albedo), 0.025, 2.0);
+            !plain && missing < tolerance && residual < tolerance * std::clamp(30 * (1 - albedo), 0.025, 3.0);
         if (accelerate && !done && sweep + 1 < most)
             acceleration.advance(result.radiance, next, products);
         else

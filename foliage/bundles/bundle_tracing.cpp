@@ -77,7 +77,7 @@ struct Pair {
 };
 
 struct DirectionLinks {
-    std::vector<Pair> pairs;
+    UninitializedVector<Pair> pairs;
     std::vector<Links::GroundLink> ground;
 };
 

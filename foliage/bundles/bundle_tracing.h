@@ -1,6 +1,7 @@
 #pragma once
 // Who sees whom: line bundles drawn once, kept as open fractions (ends of lines) and links (neighbours on lines).
 #include "common/services/progress.h"
+#include "common/services/uninitialized_vector.h"
 #include "foliage/bundles/facets.h"
 #include "foliage/bundles/line_directions.h"
 #include "foliage/bundles/line_raster.h"
@@ -46,7 +47,7 @@ using Side = std::uint32_t;
 /// after.
 struct Links {
     std::vector<std::uint32_t> begin, middle;
-    std::vector<Side> neighbours;
+    UninitializedVector<Side> neighbours;
     /// Lines that end on a texel of the ground, one in kStride^2, direction by direction.
     struct GroundLink {
         Side side;

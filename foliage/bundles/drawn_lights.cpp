@@ -100,7 +100,7 @@ void DrawnLights::add(const Distant& drawn, const glm::vec3& scale, BeamLight& s
     std::vector<glm::vec3> irradiance(count);
     for (std::size_t beam = 0; beam < count; ++beam)
         irradiance[beam] = scale * drawn.beams[beam].irradiance;
-    parallel_blocks(facets_.patch_count, 4096, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(facets_.patch_count, std::size_t(1) << 15, [&](std::size_t from, std::size_t to) {
         for (std::uint32_t f = facets_.patch_first_facet[from]; f < facets_.patch_first_facet[to]; ++f) {
             const Facet& facet = facets_.facets[f];
             const float share = facet.area / facets_.patch_area[facet.patch] / 254;

@@ -148,7 +148,7 @@ HWY_EXPORT(GatherFacets);
 void gather_ends(const Facets& facets, std::span<const glm::vec3> directions, const OpenFractions& open,
                  const EndRadiance& radiance, std::size_t first, std::size_t last, std::span<EndSums> sums) {
     auto range = [&](std::size_t begin, std::size_t end, bool bark) {
-        parallel_blocks(end - begin, 4096, [&](std::size_t from, std::size_t to) {
+        parallel_blocks(end - begin, std::size_t(1) << 14, [&](std::size_t from, std::size_t to) {
             HWY_DYNAMIC_DISPATCH(GatherFacets)
             (facets, directions, open, radiance, first, last, begin + from, begin + to, bark, sums);
         });

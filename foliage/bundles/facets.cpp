@@ -86,7 +86,8 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
 
 class Builder {
   public:
-    Builder(const PatchScene& scene, Facets& facets) : scene_(scene), facets_(facets) {}
+    Builder(const PatchScene& scene, Facets& facets)
+        : scene_(scene), facets_(facets), centre_(facets.centre), scale_(float(facets.scale)) {}
 
     void add_patch(std::uint32_t index) {
         facets_.patch_first_facet.push_back(std::uint32_t(facets_.facets.size()));
@@ -135,9 +136,7 @@ class Builder {
     }
 
   private:
-    glm::vec3 scaled(const glm::vec3& position) const {
-        return glm::vec3((glm::dvec3(position) - facets_.centre) * facets_.scale);
-    }
+    glm::vec3 scaled(const glm::vec3& position) const { return (position - centre_) * scale_; }
 
     void flush(Outline& outline, std::uint32_t patch, bool bark) {
         if (outline.count == 0)
@@ -210,6 +209,8 @@ class Builder {
 
     const PatchScene& scene_;
     Facets& facets_;
+    const glm::vec3 centre_; ///< a float itself, so that differences from it are as exact as the positions are
+    const float scale_;
     std::size_t first_facet_ = 0;
     static constexpr int kFewestCorners = 3;
     /// By corners, without and with masks.
@@ -273,11 +274,11 @@ Facets make_facets(const PatchScene& scene) {
         low = i ? glm::min(low, position) : position;
         high = i ? glm::max(high, position) : position;
     }
-    facets.centre = 0.5 * (low + high);
+    facets.centre = glm::dvec3(glm::vec3(0.5 * (low + high)));
     const double diagonal = glm::length(high - low);
     facets.scale = diagonal > 0 ? 1 / diagonal : 1;
     facets.high = glm::vec3((high - facets.centre) * facets.scale);
-    facets.low = -facets.high;
+    facets.low = glm::vec3((low - facets.centre) * facets.scale);
 
     facets.patch_first_facet.reserve(scene.patches.size() + 1);
     facets.facets.reserve(scene.patches.size());

@@ -11,6 +11,8 @@
 namespace kokage::bundles {
 namespace {
 
+constexpr std::size_t kPatchBlock = 1 << 15; // waking a thread for less costs more than it saves
+
 EndSums operator+(const EndSums& a, const EndSums& b) {
     EndSums sum;
     sum.weight = a.weight + b.weight;
@@ -122,7 +124,7 @@ SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleT
     for (SkyLight::PerSide* part : {&sky.halves[0], &sky.halves[1], &sky.all})
         resize(*part, sides);
     // A patch's facets are added up for each half and, the sums' sums, for all.
-    parallel_blocks(scene.patches.size(), 4096, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(scene.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t patch = from; patch < to; ++patch) {
             for (int h = 0; h < 2; ++h)
                 store_patch(facets, sums[h], std::uint32_t(patch), sky.halves[h]);
