@@ -3,7 +3,7 @@
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
 #include "foliage/convergence.h"
-#include "foliage/first_light_by_rays.h"
+#include "foliage/first_light.h"
 #include "foliage/light_map_field.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ namespace kokage {
 namespace {
 
 constexpr int kDefaultMaps = 100;
-constexpr int kRaysASide = 16; // of first light; as many to the lights together, at least 2 to each
+constexpr int kDirections = 64; // of the lines that first light comes along
 
 LightMapFieldOptions field_options(const ShadingOptions& options) {
     if (options.maps < 0)
@@ -47,13 +47,13 @@ class LightMapsTransport final : public Transport {
         : scene_(scene), options_(options), optics_(scene.optics), areas_(solid_areas(scene)), queries_(scene),
           ground_(queries_, options.seed, progress),
           field_(queries_, ground_.grid(), tree, field_options(options), progress) {
-        stages_.push_back({"capturing light maps", watch_.cpu(), watch_.wall()});
-        watch_.restart();
-        first_light_ = std::make_unique<FirstLightByRays>(
-            queries_, ground_.grid(), options.effort > 0 ? options.effort : kRaysASide, options.seed, progress);
+        made_.stages.push_back({"capturing light maps", watch_.cpu(), watch_.wall()});
+        first_light_ = std::make_unique<FirstLightByBundles>(
+            scene, ground_.grid(), options.effort > 0 ? options.effort : kDirections, options.seed, progress, made_);
         first_light_->filled_shares(filled_front_, filled_back_);
+        watch_.restart();
         field_.set_filled_shares(filled_front_, filled_back_);
-        stages_.push_back({"tracing the open sky", watch_.cpu(), watch_.wall()});
+        made_.stages.push_back({"weighing light maps", watch_.cpu(), watch_.wall()});
     }
 
     Solution solve(const Environment& environment, Progress& progress) override;
@@ -76,9 +76,9 @@ class LightMapsTransport final : public Transport {
     RayQueries queries_;
     GroundLight ground_;
     LightMapField field_;
-    std::unique_ptr<FirstLightByRays> first_light_;
+    std::unique_ptr<FirstLightByBundles> first_light_;
     std::vector<float> filled_front_, filled_back_;
-    std::vector<WorkReport::Stage> stages_;
+    WorkReport made_; ///< of the work before any solution
 };
 
 /// B+ = (rho E+ + tau E-)/pi, B- = (rho E- + tau E+)/pi.
@@ -98,10 +98,10 @@ SideRadiance LightMapsTransport::scatter(const SideIrradiance& first, const Side
 
 Solution LightMapsTransport::solve(const Environment& environment, Progress& progress) {
     Solution solution;
-    solution.report.stages = stages_;
+    solution.report = made_;
     Stopwatch watch;
     ground_.set_environment(environment, progress);
-    const FirstLight first = first_light_->of(environment, progress);
+    const FirstLight first = first_light_->of(environment, 0.02 * options_.error, progress, solution.report);
     const SideIrradiance direct = total(first.sky, first.lights);
     solution.report.stages.push_back({"first light", watch.cpu(), watch.wall()});
 
@@ -114,7 +114,7 @@ Solution LightMapsTransport::solve(const Environment& environment, Progress& pro
     for (bool more = true; more;) {
         progress.throw_if_stopped();
         if (!convergence.residuals().empty()) {   // the first shading has seen first light alone
-            field_.update(solution.radiance, {}); // rays see the ground better than maps
+            field_.update(solution.radiance, {}); // lines see the ground better than maps
             from_ground = first_light_->from_ground(ground_.radiance(solution.radiance));
             bounced = total(field_.irradiance(), from_ground);
         }
@@ -129,7 +129,7 @@ Solution LightMapsTransport::solve(const Environment& environment, Progress& pro
     solution.light_maps = field_.export_maps(cell_means(field_.maps().directions(), environment.remainder));
     solution.sky_visibility_front = first.open_front;
     solution.sky_visibility_back = first.open_back;
-    solution.bent_normal = first.bent_normal;
+    solution.bent_normal = first_light_->bent_normals();
     balance_energy(solution, first, bounced, from_ground);
     report(solution, convergence);
     return solution;
@@ -160,7 +160,8 @@ void LightMapsTransport::report(Solution& solution, const Convergence& convergen
     counts.push_back({"maps", field_.maps().places().size()});
     counts.push_back({"branching points", field_.placement().candidates});
     counts.push_back({"capture directions", field_.maps().directions().size()});
-    counts.push_back({"rays", field_.maps().seen().seen.size() + ground_.rays_traced() + first_light_->rays_traced()});
+    counts.push_back({"rays", field_.maps().seen().seen.size() + ground_.rays_traced()});
+    first_light_->count(solution.report);
     counts.push_back({"bounces", convergence.residuals().size() - 1});
     if (const std::size_t unread = field_.unread_maps(); unread > 0)
         solution.report.skips.push_back(

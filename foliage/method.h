@@ -22,7 +22,7 @@ std::string_view method_name(Method method);
 struct ShadingOptions {
     Method method = Method::bundles;
     double error = 0.05; ///< asked MRE (DESIGN 3); not used by `paper`
-    int effort = 0;      ///< 0 = from `error`; else bundles: directions, path-traced: paths a leaf side
+    int effort = 0;      ///< 0 = from `error`; else bundles, light-maps: directions, path-traced: paths a leaf side
     int maps = 0;        ///< 0 = the method's default (paper: 15)
     int bands = 7;
     int max_bounces = 0; ///< 0 = until the residual is below a tenth of the asked error

@@ -21,8 +21,8 @@ void add_method_options(CLI::App& app, ShadeOptions& o) {
         ->type_name("E")
         ->group("Method");
     app.add_option("--effort", o.effort,
-                   "The effort itself, in place of --error: bundles: directions; path-traced: paths a leaf side; "
-                   "light-maps: rays a leaf side; 0 = the method's own")
+                   "The effort itself, in place of --error: bundles and light-maps: directions of lines; "
+                   "path-traced: paths a leaf side; 0 = the method's own")
         ->type_name("N")
         ->group("Method");
     app.add_option("--maps", o.maps,
@@ -118,7 +118,7 @@ void complete_method(ShadeOptions& o) {
         throw InputError("--error: the paper's method can't aim at an error; leave it out, or choose another --method");
     if (o.error && s.method == Method::light_maps)
         throw InputError(
-            "--error: light-maps can't see its own error; give --effort (rays a leaf side) and --maps instead");
+            "--error: light-maps can't see its own error; give --effort (directions of lines) and --maps instead");
     if (o.error && s.effort > 0)
         throw InputError("--error and --effort contradict one another; leave one of them out");
     if (o.error && !(*o.error > 0 && *o.error <= 10))

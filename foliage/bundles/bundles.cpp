@@ -1,11 +1,10 @@
 #include "foliage/bundles/bundles.h"
 
 #include "common/services/stopwatch.h"
-#include "foliage/bundles/drawn_lights.h"
+#include "foliage/bundles/drawn_bundles.h"
 #include "foliage/bundles/half_difference.h"
 #include "foliage/bundles/model_error.h"
 #include "foliage/bundles/outside_light.h"
-#include "foliage/bundles/ray_lights.h"
 #include "foliage/bundles/ray_link_tracing.h"
 #include "foliage/bundles/steps.h"
 #include "foliage/capture_directions.h"
@@ -37,8 +36,8 @@ class BundlesTransport : public Transport {
                      Progress& progress, const Tree* tree, Reach* reach)
         : scene_(scene), tree_(tree), options_(options), adaptive_(adaptive), reach_(reach), optics_(scene.optics) {
         Stopwatch watch;
-        facets_ = make_facets(scene);
-        model_error_ = std::make_unique<ModelError>(scene, facets_, effort.uniform_side_error);
+        drawn_ = std::make_unique<DrawnBundles>(scene);
+        model_error_ = std::make_unique<ModelError>(scene, drawn_->facets(), effort.uniform_side_error);
         pending_.stages.push_back({"facets", watch.cpu(), watch.wall()});
         draw(effort, progress);
     }
@@ -57,7 +56,6 @@ class BundlesTransport : public Transport {
     };
 
     void draw(const BundleEffort& effort, Progress& progress);
-    void trace_small_leaves(const BundleTransport& earlier, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
     void fill(Solution& solution, const Lit& lit) const;
@@ -70,54 +68,20 @@ class BundlesTransport : public Transport {
     bool adaptive_;
     Reach* reach_;
     std::vector<Optics> optics_;
-    BundleEffort effort_;
-    Facets facets_;
-    BundleTransport transport_;
-    struct Rays { ///< for leaves that are too small for lines
-        explicit Rays(const PatchScene& scene) : queries(scene), points(scene) {}
-        RayQueries queries;
-        PatchPoints points;
-    };
-    std::unique_ptr<Rays> rays_;
-    std::unique_ptr<RayLights> ray_lights_;
+    std::unique_ptr<DrawnBundles> drawn_;
     std::unique_ptr<BounceOperator> bounces_;
-    std::unique_ptr<DrawnLights> lights_;
     std::unique_ptr<ModelError> model_error_;
     std::vector<Rgb> last_radiance_;
     WorkReport pending_; ///< of work since the last solution
 };
 
 void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
-    Stopwatch watch;
-    effort_ = effort;
-    const BundleTransport earlier = transport_.rays.empty() ? BundleTransport() : std::move(transport_);
-    transport_ = trace_bundles(scene_, facets_, effort.lines, progress);
-    pending_.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
-    trace_small_leaves(earlier, progress);
-    bounces_ = std::make_unique<BounceOperator>(scene_, transport_);
-    if (!lights_)
-        lights_ = std::make_unique<DrawnLights>(scene_, facets_, transport_.ground);
-    lights_->set_ray_lights(ray_lights_.get());
-    lights_->clear();
-}
-
-void BundlesTransport::trace_small_leaves(const BundleTransport& earlier, Progress& progress) {
-    ray_lights_.reset();
-    const std::vector<std::uint32_t> small = leaves_too_small_for_lines(scene_, facets_, effort_.lines);
-    if (small.empty())
-        return;
-    Stopwatch watch;
-    if (!rays_)
-        rays_ = std::make_unique<Rays>(scene_);
-    add_ray_links(rays_->queries, rays_->points, facets_, small, rays_a_side(effort_.lines), effort_.lines.seed,
-                  earlier, transport_, progress);
-    ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
-    pending_.stages.push_back({"rays from small leaves", watch.cpu(), watch.wall()});
+    drawn_->draw(effort, leaves_too_small_for_lines(scene_, drawn_->facets(), effort.lines), progress, pending_);
+    bounces_ = std::make_unique<BounceOperator>(scene_, drawn_->transport());
 }
 
 std::size_t BundlesTransport::bytes() const {
-    return facets_.bytes() + transport_.bytes() + (lights_ ? lights_->bytes() : 0) +
-           (ray_lights_ ? ray_lights_->bytes() : 0) + (rays_ ? rays_->queries.bytes() + rays_->points.bytes() : 0);
+    return drawn_->bytes();
 }
 
 /// Adds the lights to what the sky gives to every side.
@@ -153,14 +117,15 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
         progress.throw_if_stopped();
     };
     Lit lit;
-    lit.beams = lights_->light(environment, effort_, 0.02 * options_.error, options_.seed, progress, report);
+    lit.beams = drawn_->light(environment, 0.02 * options_.error, options_.seed, progress, report);
     stage("lights");
-    SkyLight sky = gather_sky(scene_, facets_, transport_, environment.remainder, lit.beams.open_ground);
+    SkyLight sky =
+        gather_sky(scene_, drawn_->facets(), drawn_->transport(), environment.remainder, lit.beams.open_ground);
     add_lights(lit.beams, sky);
     lit.outside = outside_light(sky, lit.beams);
     stage("sky");
     SweepLimits limits;
-    limits.tolerance = effort_.tolerance;
+    limits.tolerance = drawn_->effort().tolerance;
     limits.max_bounces = options_.max_bounces;
     lit.light =
         bounces_->solve(lit.outside, optics_, limits, limits.max_bounces > 0 ? std::vector<Rgb>() : last_radiance_);
@@ -200,9 +165,9 @@ void BundlesTransport::fill(Solution& solution, const Lit& lit) const {
 }
 
 void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
-    const double to_square_metres = 1 / (facets_.scale * facets_.scale);
+    const double to_square_metres = 1 / (drawn_->facets().scale * drawn_->facets().scale);
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
-        const double area = facets_.patch_area[p] * to_square_metres;
+        const double area = drawn_->facets().patch_area[p] * to_square_metres;
         const Optics& optics = optics_[scene_.patches[p].optics];
         for (int k = 0; k < 2; ++k) {
             const std::size_t s = 2 * p + std::size_t(k);
@@ -221,7 +186,7 @@ SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environ
         return *known;
     Stopwatch watch;
     const SolutionError error = model_error_->measure(lit.sampling_error, lit.light.radiance, lit.half_differences, now,
-                                                      options_.seed, transport_.fragments, progress, report);
+                                                      options_.seed, drawn_->transport().fragments, progress, report);
     report.stages.push_back({"check by paths", watch.cpu(), watch.wall()});
     return error;
 }
@@ -229,7 +194,7 @@ SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environ
 /// Bent normals, and light maps as [F] places them, showing the solved light.
 void BundlesTransport::add_host_data(const Environment& environment, Solution& solution, Progress& progress) const {
     Stopwatch watch;
-    solution.bent_normal = mean_open_directions(facets_, transport_);
+    solution.bent_normal = mean_open_directions(drawn_->facets(), drawn_->transport());
     if (tree_ && scene_.leaf_count == tree_->leaves.size() && scene_.leaf_count > 0) {
         constexpr int kDefaultMaps = 15;
         const RayQueries queries(scene_);
@@ -263,14 +228,14 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
         const double ratio = lit.sampling_error / sampling_error_for(options_.error, error.model);
         if (ratio <= 1.05 || attempt == kMostAttempts)
             break;
-        const int directions = effort_.lines.sky_directions + effort_.lines.link_directions;
+        const int directions = drawn_->effort().lines.sky_directions + drawn_->effort().lines.link_directions;
         // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
         const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
         BundleEffort more =
             effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), mean_leaf_albedo(scene_), options_.seed);
         if (more.lines.sky_directions + more.lines.link_directions <= directions)
             break;
-        more.tolerance = effort_.tolerance;
+        more.tolerance = drawn_->effort().tolerance;
         draw(more, progress);
         solution.report.append(pending_);
         pending_ = {};
@@ -289,13 +254,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     solution.transport_bytes = bytes();
     auto count = [&](const char* name, std::uint64_t value) { solution.report.counts.push_back({name, value}); };
     count("patches", scene_.patches.size());
-    count("line directions", transport_.sky_lines.directions.size() + transport_.link_lines.directions.size());
-    count("fragments", transport_.fragments);
-    count("links", transport_.links.neighbours.size());
-    if (!transport_.rays.empty()) {
-        count("leaves too small for lines", transport_.rays.patches.size());
-        count("rays from small leaves", transport_.rays.rays());
-    }
+    drawn_->count(solution.report);
     count("sweeps", solution.residuals.size());
     return solution;
 }

@@ -78,6 +78,48 @@ void resize(SkyLight::PerSide& sides, std::size_t count) {
     sides.down.resize(count);
 }
 
+/// Where there is a ground, all far ends are of its radiance.
+SkyLight gather_outside(const Facets& facets, const BundleTransport& transport, const Image& remainder,
+                        const glm::vec3& ground_radiance) {
+    SkyLight sky;
+    EndRadiance sky_ends = end_radiance(remainder, transport.sky_lines),
+                link_ends = end_radiance(remainder, transport.link_lines);
+    if (transport.ground) {
+        std::fill(sky_ends.far_end.begin(), sky_ends.far_end.end(), ground_radiance);
+        std::fill(link_ends.far_end.begin(), link_ends.far_end.end(), ground_radiance);
+    }
+    sky.near_radiance = link_ends.near_end;
+
+    std::vector<EndSums> sums[2], all(facets.facets.size());
+    for (int h = 0; h < 2; ++h) {
+        sums[h].resize(facets.facets.size());
+        auto gather = [&](const LineDirections& lines, const OpenFractions& open, const EndRadiance& ends) {
+            const std::size_t first = h == 0 ? 0 : lines.half, last = h == 0 ? lines.half : lines.directions.size();
+            gather_ends(facets, lines.directions, open, ends, first, last, sums[h]);
+        };
+        gather(transport.sky_lines, transport.sky_open, sky_ends);
+        gather(transport.link_lines, transport.link_open, link_ends);
+    }
+    const std::size_t sides = 2 * std::size_t(facets.patch_count);
+    for (SkyLight::PerSide* part : {&sky.halves[0], &sky.halves[1], &sky.all})
+        resize(*part, sides);
+    // A patch's facets are added up for each half and, the sums' sums, for all.
+    parallel_blocks(std::size_t(facets.patch_count), kPatchBlock, [&](std::size_t from, std::size_t to) {
+        for (std::size_t patch = from; patch < to; ++patch) {
+            for (int h = 0; h < 2; ++h)
+                store_patch(facets, sums[h], std::uint32_t(patch), sky.halves[h]);
+            for (std::uint32_t f = facets.patch_first_facet[patch]; f < facets.patch_first_facet[patch + 1]; ++f)
+                all[f] = sums[0][f] + sums[1][f];
+            store_patch(facets, all, std::uint32_t(patch), sky.all);
+        }
+    });
+    for (int h = 0; h < 2; ++h)
+        fill_unseen(facets, sums[h], sky.halves[h]);
+    fill_unseen(facets, all, sky.all);
+    gather_ray_ends(transport, remainder, ground_radiance, sky);
+    return sky;
+}
+
 } // namespace
 
 glm::vec3 horizontal_irradiance(const Image& remainder) {
@@ -98,46 +140,17 @@ glm::vec3 horizontal_irradiance(const Image& remainder) {
 
 SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleTransport& transport,
                     const Image& remainder, const glm::vec3& light_on_open_ground) {
-    SkyLight sky;
-    EndRadiance sky_ends = end_radiance(remainder, transport.sky_lines),
-                link_ends = end_radiance(remainder, transport.link_lines);
-    glm::vec3 ground_radiance(0.f);
-    if (scene.ground) {
-        sky.open_ground_irradiance = horizontal_irradiance(remainder);
-        ground_radiance = scene.ground->albedo / kPi * (sky.open_ground_irradiance + light_on_open_ground);
-        std::fill(sky_ends.far_end.begin(), sky_ends.far_end.end(), ground_radiance);
-        std::fill(link_ends.far_end.begin(), link_ends.far_end.end(), ground_radiance);
-    }
-    sky.near_radiance = link_ends.near_end;
-
-    std::vector<EndSums> sums[2], all(facets.facets.size());
-    for (int h = 0; h < 2; ++h) {
-        sums[h].resize(facets.facets.size());
-        auto gather = [&](const LineDirections& lines, const OpenFractions& open, const EndRadiance& ends) {
-            const std::size_t first = h == 0 ? 0 : lines.half, last = h == 0 ? lines.half : lines.directions.size();
-            gather_ends(facets, lines.directions, open, ends, first, last, sums[h]);
-        };
-        gather(transport.sky_lines, transport.sky_open, sky_ends);
-        gather(transport.link_lines, transport.link_open, link_ends);
-    }
-    const std::size_t sides = 2 * scene.patches.size();
-    for (SkyLight::PerSide* part : {&sky.halves[0], &sky.halves[1], &sky.all})
-        resize(*part, sides);
-    // A patch's facets are added up for each half and, the sums' sums, for all.
-    parallel_blocks(scene.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
-        for (std::size_t patch = from; patch < to; ++patch) {
-            for (int h = 0; h < 2; ++h)
-                store_patch(facets, sums[h], std::uint32_t(patch), sky.halves[h]);
-            for (std::uint32_t f = facets.patch_first_facet[patch]; f < facets.patch_first_facet[patch + 1]; ++f)
-                all[f] = sums[0][f] + sums[1][f];
-            store_patch(facets, all, std::uint32_t(patch), sky.all);
-        }
-    });
-    for (int h = 0; h < 2; ++h)
-        fill_unseen(facets, sums[h], sky.halves[h]);
-    fill_unseen(facets, all, sky.all);
-    gather_ray_ends(transport, remainder, ground_radiance, sky);
+    if (!scene.ground)
+        return gather_outside(facets, transport, remainder, glm::vec3(0.f));
+    const glm::vec3 irradiance = horizontal_irradiance(remainder);
+    SkyLight sky =
+        gather_outside(facets, transport, remainder, scene.ground->albedo / kPi * (irradiance + light_on_open_ground));
+    sky.open_ground_irradiance = irradiance;
     return sky;
+}
+
+SideLight gather_sky_alone(const Facets& facets, const BundleTransport& transport, const Image& remainder) {
+    return gather_outside(facets, transport, remainder, glm::vec3(0.f)).all;
 }
 
 std::vector<glm::vec3> mean_open_directions(const Facets& facets, const BundleTransport& transport) {
@@ -148,6 +161,8 @@ std::vector<glm::vec3> mean_open_directions(const Facets& facets, const BundleTr
         EndRadiance directions{lines->directions, lines->directions};
         for (glm::vec3& up : directions.near_end)
             up = -up;
+        if (transport.ground) // below is ground, not sky
+            std::fill(directions.far_end.begin(), directions.far_end.end(), glm::vec3(0.f));
         gather_ends(facets, lines->directions, *open, directions, 0, lines->directions.size(), sums);
     }
     std::vector<glm::vec3> means(facets.patch_count, glm::vec3(0.f));

@@ -18,8 +18,11 @@ struct SkyLight {
 SkyLight gather_sky(const PatchScene& scene, const Facets& facets, const BundleTransport& transport,
                     const Image& remainder, const glm::vec3& light_on_open_ground);
 
-/// Mean open direction of both sides of every patch together (a bent normal); unit, or 0 where all is shut or the sides
-/// balance.
+/// What the sky gives of it, from all directions; a ground is black, and its share of the sides is `down`.
+SideLight gather_sky_alone(const Facets& facets, const BundleTransport& transport, const Image& remainder);
+
+/// Mean open direction of both sides of every patch together (a bent normal), where a ground is not open; unit, or 0
+/// where all is shut or the sides balance.
 std::vector<glm::vec3> mean_open_directions(const Facets& facets, const BundleTransport& transport);
 
 /// Irradiance of an open, horizontal ground by the image's upper half.

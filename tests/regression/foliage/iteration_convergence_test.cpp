@@ -42,7 +42,8 @@ TEST(IterationConvergence, PaperContractsByTheShareOfTheCrownThatItsMapsSee) {
     EXPECT_TRUE(grey.report.warnings.empty());
 }
 
-// Never slower than the albedo, and faster by as much as light gets out of the crown.
+// Never slower than the albedo, and faster by as much as light gets out of the crown. (With first light by 16 rays a
+// side the rates were 0.596 and 0.562: the root of a share is the smaller the noisier the share is.)
 TEST(IterationConvergence, LightMapsContractByLessThanTheAlbedo) {
     for (const GatherRule gather : {GatherRule::rule, GatherRule::cosine}) {
         const Solution half = bounce(Method::light_maps, crown(0.5f), gather),
@@ -50,7 +51,7 @@ TEST(IterationConvergence, LightMapsContractByLessThanTheAlbedo) {
         EXPECT_LT(rate(half), 0.5);
         EXPECT_LT(rate(white), 1);
         EXPECT_NEAR(rate(white), 2 * rate(half), 0.04);
-        EXPECT_NEAR(rate(white), gather == GatherRule::rule ? 0.596 : 0.562, 0.01);
+        EXPECT_NEAR(rate(white), gather == GatherRule::rule ? 0.616 : 0.565, 0.01);
     }
 }
 

@@ -34,11 +34,11 @@ class LeafShading : public testing::Test {
                         solid_areas(crown->scene));
     }
 
-    static Accuracy judge(Method method, GatherRule gather = GatherRule::cosine, int rays = 0) {
+    static Accuracy judge(Method method, GatherRule gather = GatherRule::cosine, int directions = 0) {
         ShadingOptions options;
         options.method = method;
         options.gather = gather;
-        options.effort = rays;
+        options.effort = directions;
         return judge(options);
     }
 
@@ -59,20 +59,20 @@ TEST_F(LeafShading, PaperIsFarFromTheTruth) {
     EXPECT_NEAR(paper.bias, 0.05, 0.03);
 }
 
-// First light is exact but for its noise, which 256 rays a side make small; what is left is the maps' blur of bounced
+// First light is exact but for its noise, which 256 directions make small; what is left is the maps' blur of bounced
 // light.
 TEST_F(LeafShading, LightMapsComeNearIt) {
     const Accuracy cosine = judge(Method::light_maps, GatherRule::cosine, 256);
-    EXPECT_NEAR(cosine.mre, 0.068, 0.015);
-    EXPECT_NEAR(cosine.bias, 0, 0.03);
+    EXPECT_NEAR(cosine.mre, 0.068, 0.01);
+    EXPECT_NEAR(cosine.bias, -0.005, 0.02);
     const Accuracy rule = judge(Method::light_maps, GatherRule::rule, 256);
-    EXPECT_NEAR(rule.mre, 0.091, 0.015);
+    EXPECT_NEAR(rule.mre, 0.090, 0.01);
     EXPECT_LT(cosine.mre, rule.mre) << "why the cosine is the default";
 }
 
-// The default's 16 rays a side add their noise.
-TEST_F(LeafShading, LightMapsByDefaultAreNoisier) {
-    EXPECT_NEAR(judge(Method::light_maps).mre, 0.082, 0.02);
+// In a small crown of bright leaves the noise of the default's 64 directions drowns in that blur.
+TEST_F(LeafShading, LightMapsByDefaultAreAboutAsNear) {
+    EXPECT_NEAR(judge(Method::light_maps).mre, 0.069, 0.01);
 }
 
 } // namespace
