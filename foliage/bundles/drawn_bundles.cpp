@@ -13,21 +13,22 @@ DrawnBundles::DrawnBundles(const PatchScene& scene)
 void DrawnBundles::draw(const BundleEffort& effort, const std::vector<std::uint32_t>& too_small, Progress& progress,
                         WorkReport& report) {
     Stopwatch watch;
-    effort_ = effort;
-    const BundleTransport earlier = transport_.rays.empty() ? BundleTransport() : std::move(transport_);
-    lights_.set_ray_lights(nullptr); // they refer to the rays that now go
-    ray_lights_.reset();
-    transport_ = trace_bundles(scene_, facets_, effort.lines, progress);
+    BundleTransport drawn = trace_bundles(scene_, facets_, effort.lines, progress);
     report.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
     if (!too_small.empty()) {
         watch.restart();
         if (!rays_)
             rays_ = std::make_unique<Rays>(scene_);
         add_ray_links(rays_->queries, rays_->points, facets_, too_small, rays_a_side(effort.lines), effort.lines.seed,
-                      earlier, transport_, progress);
-        ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
+                      transport_, drawn, progress);
         report.stages.push_back({"rays from small leaves", watch.cpu(), watch.wall()});
     }
+    lights_.set_ray_lights(nullptr); // they refer to the rays that now go
+    ray_lights_.reset();
+    effort_ = effort;
+    transport_ = std::move(drawn);
+    if (!transport_.rays.empty())
+        ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
     lights_.set_ray_lights(ray_lights_.get());
     lights_.clear();
 }

@@ -16,7 +16,7 @@ class DrawnBundles {
     DrawnBundles& operator=(const DrawnBundles&) = delete;
 
     /// Draws the lines, anew if there are some. Leaves `too_small` (leaves_too_small_for_lines()) get rays. Lights are
-    /// forgotten. Stages go to `report`.
+    /// forgotten. Stages go to `report`. Throws Stopped; the lines that were there then serve on.
     void draw(const BundleEffort& effort, const std::vector<std::uint32_t>& too_small, Progress& progress,
               WorkReport& report);
     /// DrawnLights::light() with the effort of the last draw().

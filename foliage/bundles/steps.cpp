@@ -10,37 +10,42 @@ class Steps : public Transport {
     Solution solve(const Environment& environment, Progress& progress) override {
         WorkReport before;
         for (;;) {
+            if (!transport_) // the last call was stopped while a step was made
+                make(progress);
+            reach_->gave_up = false;
             Solution solution = transport_->solve(environment, progress);
-            if (!reach_.gave_up) {
-                before.append(solution.report);
+            before.append(solution.report);
+            if (!reach_->gave_up) {
                 solution.report = std::move(before);
                 return solution;
             }
-            before.stages.insert(before.stages.end(), solution.report.stages.begin(), solution.report.stages.end());
+            transport_.reset(); // the next step needs its memory
             ++step_;
-            make(progress);
         }
     }
     void set_optics(const std::vector<Optics>& optics) override {
+        if (transport_)
+            transport_->set_optics(optics);
         optics_ = optics;
-        transport_->set_optics(optics);
     }
-    std::size_t bytes() const override { return transport_->bytes(); }
+    std::size_t bytes() const override { return transport_ ? transport_->bytes() : 0; }
 
   private:
+    /// Changes nothing if the maker throws.
     void make(Progress& progress) {
-        transport_.reset();
-        reach_ = {};
-        reach_.may_give_up = step_ + 1 < makers_.size();
-        transport_ = makers_[step_](reach_, progress);
+        auto reach = std::make_unique<Reach>();
+        reach->may_give_up = step_ + 1 < makers_.size();
+        std::unique_ptr<Transport> transport = makers_[step_](*reach, progress);
         if (!optics_.empty())
-            transport_->set_optics(optics_);
+            transport->set_optics(optics_);
+        reach_ = std::move(reach);
+        transport_ = std::move(transport);
     }
 
     std::vector<StepMaker> makers_;
     std::size_t step_ = 0;
-    Reach reach_;
-    std::vector<Optics> optics_; ///< as set last; empty = the scene's
+    std::unique_ptr<Reach> reach_; ///< outlives `transport_`
+    std::vector<Optics> optics_;   ///< as set last; empty = the scene's
     std::unique_ptr<Transport> transport_;
 };
 

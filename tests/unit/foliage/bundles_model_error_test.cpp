@@ -1,4 +1,5 @@
 // The error that no number of lines mends: how it is measured, and what is done about it.
+#include "common/services/error.h"
 #include "foliage/accuracy.h"
 #include "foliage/bundles/error_by_paths.h"
 #include "foliage/bundles/steps.h"
@@ -6,6 +7,7 @@
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -200,6 +202,116 @@ TEST(BundlesSteps, TheNextIsTakenWhereOneGivesUpAndKept) {
     EXPECT_EQ(
         make_steps({step(1, false), step(2, false)}, silent_progress())->solve({}, silent_progress()).estimated_error,
         1);
+}
+
+TEST(BundlesSteps, WhatIsReportedOfAStepThatGaveUpIsKept) {
+    class Reporting : public Step {
+      public:
+        using Step::Step;
+        Solution solve(const Environment& environment, Progress& progress) override {
+            Solution solution = Step::solve(environment, progress);
+            solution.report.counts.push_back({"paths", 7});
+            solution.report.skips.push_back({"a light", "weak", "a raster"});
+            solution.report.warnings.push_back("a warning");
+            return solution;
+        }
+    };
+    const auto steps = make_steps(
+        {[](Reach& reach, Progress&) -> std::unique_ptr<Transport> {
+             return std::make_unique<Reporting>(1, true, reach);
+         },
+         [](Reach& reach, Progress&) -> std::unique_ptr<Transport> { return std::make_unique<Step>(2, false, reach); }},
+        silent_progress());
+    const Solution solution = steps->solve({}, silent_progress());
+    EXPECT_EQ(solution.estimated_error, 2);
+    EXPECT_EQ(solution.report.counts.size(), 1u);
+    EXPECT_EQ(solution.report.skips.size(), 1u);
+    EXPECT_TRUE(says(solution, "a warning"));
+}
+
+TEST(BundlesSteps, AStepWhoseMakingWasStoppedIsMadeByTheNextSolve) {
+    bool stop = true;
+    const auto steps = make_steps({[](Reach& reach, Progress&) { return std::make_unique<Step>(1, true, reach); },
+                                   [&](Reach& reach, Progress&) {
+                                       if (stop)
+                                           throw Stopped();
+                                       return std::make_unique<Step>(2, false, reach);
+                                   }},
+                                  silent_progress());
+    EXPECT_THROW(steps->solve({}, silent_progress()), Stopped);
+    EXPECT_EQ(steps->bytes(), 0u);
+    steps->set_optics(std::vector<Optics>(3));
+    EXPECT_THROW(steps->solve({}, silent_progress()), Stopped);
+    stop = false;
+    const Solution solution = steps->solve({}, silent_progress());
+    EXPECT_EQ(solution.estimated_error, 2);
+    EXPECT_EQ(solution.transport_bytes, 3u) << "the colours that were set meanwhile";
+}
+
+/// Stops when the nth stage of the work begins.
+class StopAt : public Progress {
+  public:
+    explicit StopAt(int nth) : left_(nth) {}
+    void begin(std::string_view, std::size_t) override { --left_; }
+    bool stop_requested() const override { return left_ <= 0; }
+    bool stopped() const { return left_ <= 0; }
+
+  private:
+    std::atomic<int> left_;
+};
+
+/// Solves, stopped at one stage after another, each time followed by a whole solve(). Returns the number of stops.
+int expect_stops_change_nothing(const test::SmallTree& small, const Environment& environment,
+                                const ShadingOptions& options) {
+    const Solution whole =
+        make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+    for (int stops = 0;; ++stops) {
+        SCOPED_TRACE(stops);
+        const auto transport = make_transport(small.scene, small.tree, options, silent_progress());
+        StopAt progress(stops + 1);
+        try {
+            transport->solve(environment, progress);
+            if (!progress.stopped())
+                return stops;
+        } catch (const Stopped&) {
+        }
+        const Solution again = transport->solve(environment, silent_progress());
+        EXPECT_EQ(again.radiance.front, whole.radiance.front);
+        EXPECT_EQ(again.radiance.back, whole.radiance.back);
+        EXPECT_EQ(again.estimated_error, whole.estimated_error);
+        if (testing::Test::HasFailure())
+            return stops;
+    }
+}
+
+TEST(BundlesSteps, ASolveAfterAStoppedOneGivesTheSame) {
+    ShadingOptions options;
+    options.error = 0.05; // out of reach of bundles: paths are traced
+    EXPECT_GE(expect_stops_change_nothing(leaves_on_a_half_lit_card(), sun_overhead(), options), 2);
+}
+
+TEST(BundlesSteps, ASolveThatWasStoppedWhileMoreLinesWereDrawnGoesOnWithTheOldOnes) {
+    test::SmallTree small = test::ball_on_a_skeleton(1500, 1, test::bright_leaf());
+    // Every fifth leaf is small, so that the first lines don't do.
+    for (const Patch& patch : small.scene.patches)
+        if (patch.leaf % 5 == 0)
+            for (std::uint32_t t = 0; t < patch.triangle_count; ++t)
+                for (std::size_t c = 0; c < 3; ++c) {
+                    glm::vec3& position = small.scene.positions[small.scene.triangles[patch.first_triangle + t][c]];
+                    const glm::vec3 centre = small.tree.leaves[patch.leaf].centre;
+                    if (glm::distance(position, centre) > 0.02f)
+                        position = centre + 0.01f * glm::normalize(position - centre);
+                }
+    ShadingOptions options;
+    options.error = 0.03;
+    const Solution solution = make_transport(small.scene, small.tree, options, silent_progress())
+                                  ->solve(test::sky_and_sun(), silent_progress());
+    auto stages = [&](const char* name) {
+        return std::count_if(solution.report.stages.begin(), solution.report.stages.end(),
+                             [&](const WorkReport::Stage& stage) { return stage.name == name; });
+    };
+    EXPECT_GE(stages("line bundles"), 2);
+    EXPECT_GE(expect_stops_change_nothing(small, test::sky_and_sun(), options), 2);
 }
 
 } // namespace
