@@ -1,5 +1,5 @@
 #pragma once
-// Error figures of a shading against a reference, exactly as DESIGN 3 defines them.
+// Error figures of a shading against a reference, as every figure in this project is meant.
 #include "common/scene/patch_scene.h"
 #include "foliage/solution.h"
 

@@ -21,11 +21,12 @@ std::string_view method_name(Method method);
 
 struct ShadingOptions {
     Method method = Method::bundles;
-    double error = 0.05; ///< asked MRE (DESIGN 3); not used by `paper`
+    double error = 0.05; ///< asked MRE (accuracy.h); not used by `paper`
     int effort = 0;      ///< 0 = from `error`; else bundles, light-maps: directions, path-traced: paths a leaf side
     int maps = 0;        ///< 0 = the method's default (paper: 15)
     int bands = 7;
-    int max_bounces = 0; ///< 0 = until the residual is below a tenth of the asked error
+    int max_bounces =
+        0; ///< scatterings between light and leaf; 0 = until what is missing is small against the asked error
     GatherRule gather = GatherRule::cosine;
     bool for_hosts = false; ///< also what only hosts read: bent normals, light maps
     std::uint64_t seed = 1;

@@ -52,8 +52,8 @@ class SidePaths {
     std::vector<SideSums> sides_;
 };
 
-/// MRE (DESIGN 3) of the mean of two independent estimates of equal effort, from their difference: the mean's error and
-/// half the difference have the same distribution when errors are symmetric.
+/// MRE (accuracy.h) of the mean of two independent estimates of equal effort, from their difference: the mean's error
+/// and half the difference have the same distribution when errors are symmetric.
 double half_sample_error(const std::vector<glm::vec3>& first, const std::vector<glm::vec3>& second);
 
 } // namespace kokage

@@ -22,9 +22,10 @@ struct Solution {
         sky_visibility_back;            ///< cosine-weighted share of the side's hemisphere that is open; may be empty
     std::vector<glm::vec3> bent_normal; ///< mean open direction of both sides together, unit or 0; may be empty
     std::vector<LightMap> light_maps;   ///< may be empty
-    std::vector<double> residuals;      ///< per bounce: largest change of any side's radiance over the largest radiance
-    std::optional<double>
-        estimated_error; ///< of the MRE, from half-sample differences; empty where samples can't show it
+    std::vector<double>
+        residuals; ///< per bounce or sweep: largest change of any side's radiance over the largest radiance
+    std::optional<double> estimated_error; ///< of the MRE, from differences of half samples, and paths where those do
+                                           ///< not see it; empty where samples can't show it
     double energy_in = 0, energy_absorbed = 0,
            energy_escaped = 0; ///< luminance x sr x m^2: into the tree from outside; balance = (absorbed + escaped)/in
     std::size_t transport_bytes = 0; ///< kept between relights

@@ -72,6 +72,8 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
     haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - *height_));
     if (!(haze_distance_ > 0))
         haze_distance_ = 1;
+    if (albedo_)
+        measure_haze();
     light_.emplace(scene, queries, backdrop, *height_, progress);
     backdrop_irradiance_ = light_->open_irradiance();
     for (const DistantLight& light : environment.distant_lights)
@@ -116,8 +118,34 @@ glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& 
             ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
         radiance = clear * light_at(point, *albedo_ * variation, sample, scratch);
     }
-    const glm::vec3 level = glm::normalize(glm::vec3(direction.x, 0.01f, direction.z) + glm::vec3(0, 1e-20f, 0));
-    return radiance + (1 - clear) * backdrop_.remainder(level);
+    return radiance + (1 - clear) * haze(direction);
+}
+
+/// Air mixes the light of a wide part of the horizon: the mean over azimuth, weighted by the squared cosine of how far
+/// it lies to the side. (One direction's alone would draw every tree and house of the horizon down into the ground.)
+void GroundShading::measure_haze() {
+    constexpr int kAzimuths = 128;
+    const auto turn = [](int i) { return 2 * kPi * float(i) / kAzimuths; };
+    std::vector<glm::vec3> horizon;
+    for (int i = 0; i < kAzimuths; ++i)
+        horizon.push_back(backdrop_.remainder(glm::normalize(glm::vec3(std::cos(turn(i)), 0.01f, std::sin(turn(i))))));
+    haze_.assign(kAzimuths, glm::vec3(0.f));
+    for (int i = 0; i < kAzimuths; ++i) {
+        float weights = 0;
+        for (int k = -kAzimuths / 4; k <= kAzimuths / 4; ++k) {
+            const float weight = std::cos(turn(k)) * std::cos(turn(k));
+            haze_[std::size_t(i)] += weight * horizon[std::size_t((i + k + kAzimuths) % kAzimuths)];
+            weights += weight;
+        }
+        haze_[std::size_t(i)] /= weights;
+    }
+}
+
+glm::vec3 GroundShading::haze(const glm::vec3& direction) const {
+    const float count = float(haze_.size());
+    const float place = (std::atan2(direction.z, direction.x) / (2 * kPi) + 1) * count, floor = std::floor(place);
+    const auto at = [&](float i) { return haze_[std::size_t(i) % haze_.size()]; };
+    return glm::mix(at(floor), at(floor + 1), place - floor);
 }
 
 glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,

@@ -27,6 +27,8 @@ class GroundShading {
                             ShadingScratch& scratch) const;
     glm::vec3 shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
                                 ShadingScratch& scratch) const;
+    void measure_haze();
+    glm::vec3 haze(const glm::vec3& direction) const;
     glm::vec3 light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
                        ShadingScratch& scratch) const;
 
@@ -38,6 +40,7 @@ class GroundShading {
     std::optional<GroundSkyLight> light_;
     glm::vec3 backdrop_irradiance_{0.f}; ///< upwards, open: what lit the ground that the backdrop shows
     glm::vec2 centre_{0.f};
+    std::vector<glm::vec3> haze_; ///< by azimuth: what far ground fades into
     float scene_radius_ = 1, haze_distance_ = 1, pixel_angle_ = 0.001f;
 };
 

@@ -22,7 +22,7 @@ struct PatchOrigins {
 };
 
 /// rho = (1-f) base colour, tau = f transmission colour; without KHR_materials_diffuse_transmission tau = 0.8 rho,
-/// scaled to rho + tau <= 0.95 (DESIGN 4). Texture means are weighted by alpha. Patches: leaves first, in leaf order,
+/// scaled to rho + tau <= 0.95. Texture means are weighted by alpha. Patches: leaves first, in leaf order,
 /// then bark patches in order. Positions are those of the tree's parts one after the other (part 0's first), then those
 /// that subdivision adds; relative to Tree::origin. uvs are there if any part has them. Throws InputError if the tree's
 /// indices contradict one another.

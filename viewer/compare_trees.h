@@ -9,7 +9,7 @@
 namespace kokage {
 
 struct TreeComparison {
-    Accuracy accuracy; ///< of the leaves, as DESIGN's metrics: see foliage/accuracy.h
+    Accuracy accuracy; ///< of the leaves, see foliage/accuracy.h
     std::size_t leaves = 0;
     double largest = 0;           ///< relative error of a leaf side
     std::size_t largest_leaf = 0; ///< where that is

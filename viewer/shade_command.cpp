@@ -109,7 +109,7 @@ void print_summary(const ShadeOptions& options, const Shading& s, const StageClo
         std::printf("estimated error %.2g %%%s, ", 100 * *s.solution.estimated_error,
                     asked_text(options.shading).c_str());
     if (!s.solution.residuals.empty())
-        std::printf("%s, ", counted(s.solution.residuals.size(), "bounce", "bounces").c_str());
+        std::printf("%s, ", counted(s.solution.residuals.size(), "sweep", "sweeps").c_str());
     std::printf("%s kept for relighting\n", bytes_text(double(s.solution.transport_bytes)).c_str());
     for (const WorkReport::Stage& stage : clock.stages())
         std::printf("  %-12s %10s  (CPU %s)\n", stage.name.c_str(), duration_text(stage.wall_seconds).c_str(),

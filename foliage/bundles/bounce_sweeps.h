@@ -1,8 +1,10 @@
 #pragma once
 // Light between sides: sparse sweeps over the links until nothing changes any more.
 //
-//   E(s) = E_outside(s) + pi (1 - open(s)) mean of B over the neighbours of s + pi down(s) mean of (B_ground -
-//   B_open_ground) B(s) = (rho E(s) + tau E(other side)) / pi
+//   E(s) = E_outside(s) + pi (1 - open(s)) mean of B over the neighbours of s
+//        + pi down(s) mean of (B_ground - B_open_ground)
+//
+//   B(s) = (rho E(s) + tau E(other side)) / pi
 //
 // Every row's weights are non-negative and sum to at most 1, so a sweep contracts the largest difference by the largest
 // rho + tau. The open share comes from all lines, the neighbours' mean from the link lines: in a furnace (constant
@@ -35,7 +37,6 @@ struct SweepLimits {
 struct SweepResult {
     std::vector<Rgb> radiance;     ///< B per side
     std::vector<double> residuals; ///< per sweep: largest change of a side over the largest radiance
-    int coarse_sweeps = 0;         ///< over a quarter of the links, for a first guess; not among the residuals
     std::vector<Rgb>
         from_ground; ///< per side: mean of (B_ground - B_open_ground) over its lines to the ground; empty without
 };

@@ -1,5 +1,6 @@
 #include "foliage/bundles/bundle_tracing.h"
 
+#include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
 
@@ -134,6 +135,14 @@ void collect_links(const RasterScratch& raster, const Projection& projection, co
     out.pairs.resize(std::size_t(pair - out.pairs.data()));
 }
 
+/// Rows are found by 32-bit numbers: 17 GB of links.
+void require_countable(std::uint64_t links) {
+    if (links > 0xffffffffull)
+        throw InputError("bundles: so many lines would need " + std::to_string(links) +
+                         " links, more than 4 thousand million: ask for a larger error (--error), less effort, or "
+                         "path-traced");
+}
+
 /// Compressed rows from pairs. The halves fill disjoint parts of each row, each in the order of its directions.
 void compress(const PatchScene& scene, const std::vector<DirectionLinks>& directions, std::uint32_t half,
               Links& links) {
@@ -152,6 +161,10 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     });
     links.begin.resize(side_count + 1);
     links.middle.resize(side_count);
+    std::uint64_t all = side_count;
+    for (const DirectionLinks& direction : directions)
+        all += 2 * direction.pairs.size();
+    require_countable(all);
     std::uint32_t running = 0;
     std::vector<Side> lonely;
     for (std::size_t s = 0; s < side_count; ++s) {

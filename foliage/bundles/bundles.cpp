@@ -126,7 +126,8 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
     stage("sky");
     SweepLimits limits;
     limits.tolerance = drawn_->effort().tolerance;
-    limits.max_bounces = options_.max_bounces;
+    // The leaf that is looked at scatters, too: that is one sweep more than there are scatterings before it.
+    limits.max_bounces = options_.max_bounces > 0 ? options_.max_bounces + 1 : 0;
     lit.light =
         bounces_->solve(lit.outside, optics_, limits, limits.max_bounces > 0 ? std::vector<Rgb>() : last_radiance_);
     stage("bounces");

@@ -1,5 +1,5 @@
 #pragma once
-// The `bundles` method: line bundles, solved in full as a sparse operator (DESIGN 4).
+// The `bundles` method: line bundles, solved in full as a sparse operator.
 //
 //   facets -> bundle tracing -> [sky + drawn lights = outside light] -> bounce sweeps -> solution
 //             (who sees whom)   (per environment)                      (per environment or optics)

@@ -20,7 +20,8 @@ std::vector<glm::vec3> leaf_sides(const PatchScene& scene, const std::vector<Rgb
 
 namespace {
 
-/// DESIGN 3: mean over sides and channels of |difference| / max(value, 0.05 mean value of that channel).
+/// MRE as in foliage/accuracy.h: mean over sides and channels of |difference| / max(value, 0.05 mean value of that
+/// channel).
 template <class Values>
 double mean_relative(const Values& value, const Values& difference, std::size_t count) {
     if (count == 0)

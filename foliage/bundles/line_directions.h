@@ -9,8 +9,8 @@
 namespace kokage::bundles {
 
 /// Unit directions in the lower hemisphere (y <= 0): a line runs from its near end in the sky down to its far end, and
-/// shows both. Two halves, [0, half) and [half, size), drawn independently of each other, each spread evenly: what they
-/// disagree by is the error that both together still have.
+/// shows both. Two halves, [0, half) and [half, size), every second direction of one evenly spread set, so each spread
+/// evenly: what they disagree by is the error that both together still have.
 struct LineDirections {
     std::vector<glm::vec3> directions;
     std::uint32_t half = 0;

@@ -1,5 +1,5 @@
 #pragma once
-// "At equal error" (DESIGN 3): log-log interpolation between the measured efforts of a method.
+// "At equal error": log-log interpolation between the measured efforts of a method.
 #include <optional>
 #include <vector>
 

@@ -144,6 +144,22 @@ TEST(Bundles, ComesNearTheTruthAndKnowsHowNear) {
     }
 }
 
+// A bounce is a scattering between the light and the leaf that is looked at, in every method.
+TEST(Bundles, CountedBouncesAreThoseOfPaths) {
+    const test::SmallTree small = test::ball_on_a_skeleton(200, 4, test::bright_leaf());
+    for (int bounces : {1, 2, 4}) {
+        ShadingOptions lines = bundles_options(300), paths;
+        lines.max_bounces = paths.max_bounces = bounces;
+        paths.method = Method::path_traced;
+        paths.effort = 800;
+        const Solution truth = shade(small, test::sky_and_sun(), paths);
+        const Solution solution = shade(small, test::sky_and_sun(), lines);
+        const Accuracy found = accuracy(leaf_side_radiance(small.scene, solution.radiance),
+                                        leaf_side_radiance(small.scene, truth.radiance), solid_areas(small.scene));
+        EXPECT_NEAR(found.bias, 0, 0.03) << bounces; // one too few: 0.07 and more
+    }
+}
+
 TEST(Bundles, ErrorFallsWithEffort) {
     const test::SmallTree small = test::ball_on_a_skeleton(500, 3, test::realistic_leaf());
     double before = 1;
