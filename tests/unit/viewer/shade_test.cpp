@@ -227,7 +227,7 @@ TEST(Shade, SummaryNamesAddedLightsAndCountsInGoodEnglish) {
     ASSERT_EQ(run.status, 0) << run.errors;
     EXPECT_EQ(run.output.rfind("oak: 1 leaf, ", 0), 0u) << run.output;
     EXPECT_NE(run.output.find("with the lights point:0,5,0,1 + sun:0,50,3,3,3\n"), std::string::npos) << run.output;
-    EXPECT_NE(run.output.find(", 1 sweep, "), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find(", 2 sweeps, "), std::string::npos) << run.output;
 }
 
 TEST(Shade, AShadedFileIsKnownAsOne) {
