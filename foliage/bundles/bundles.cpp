@@ -14,6 +14,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <string>
 
 namespace kokage {
@@ -58,6 +59,8 @@ class BundlesTransport : public Transport {
     void draw(const BundleEffort& effort, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
+    std::optional<BundleEffort> more_lines(const Lit& lit, const SolutionError& error) const;
+    bool out_of_reach(const SolutionError& error) const;
     void fill(Solution& solution, const Lit& lit) const;
     void balance(Solution& solution, const Lit& lit) const;
     void add_host_data(const Environment& environment, Solution& solution, Progress& progress) const;
@@ -78,10 +81,11 @@ class BundlesTransport : public Transport {
 void BundlesTransport::draw(const BundleEffort& effort, Progress& progress) {
     drawn_->draw(effort, leaves_too_small_for_lines(scene_, drawn_->facets(), effort.lines), progress, pending_);
     bounces_ = std::make_unique<BounceOperator>(scene_, drawn_->transport());
+    model_error_->forget();
 }
 
 std::size_t BundlesTransport::bytes() const {
-    return drawn_->bytes();
+    return drawn_->bytes() + model_error_->bytes();
 }
 
 /// Adds the lights to what the sky gives to every side.
@@ -183,13 +187,43 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
 SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environment, Progress& progress,
                                       WorkReport& report) {
     const LightAndMatter now{environment, optics_, options_.max_bounces};
-    if (const std::optional<SolutionError> known = model_error_->known(lit.sampling_error, now))
-        return *known;
-    Stopwatch watch;
-    const SolutionError error = model_error_->measure(lit.sampling_error, lit.light.radiance, lit.half_differences, now,
-                                                      options_.seed, drawn_->transport().fragments, progress, report);
-    report.stages.push_back({"check by paths", watch.cpu(), watch.wall()});
+    auto measure = [&] {
+        Stopwatch watch;
+        const SolutionError error = model_error_->measure(lit.sampling_error, lit.light.radiance, lit.half_differences,
+                                                          now, options_.seed, progress, report);
+        report.stages.push_back({"check by paths", watch.cpu(), watch.wall()});
+        return error;
+    };
+    const std::optional<SolutionError> known = model_error_->known(lit.sampling_error, now);
+    const SolutionError error = known ? *known : measure();
+    // One measurement may decide to go on, but not where to end.
+    if (adaptive_ && error.measured && !model_error_->measured_twice() && !more_lines(lit, error))
+        return measure();
     return error;
+}
+
+/// More lines that should reach the asked error; empty if it is reached, or they are no use.
+std::optional<BundleEffort> BundlesTransport::more_lines(const Lit& lit, const SolutionError& error) const {
+    if (error.all <= 1.02 * options_.error || out_of_reach(error))
+        return {};
+    const double ratio = lit.sampling_error / sampling_error_for(options_.error, error.model);
+    if (ratio <= 1.05)
+        return {};
+    const int directions = drawn_->effort().lines.sky_directions + drawn_->effort().lines.link_directions;
+    // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
+    const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
+    BundleEffort more =
+        effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), mean_leaf_albedo(scene_), options_.seed);
+    if (more.lines.sky_directions + more.lines.link_directions <= directions)
+        return {};
+    more.tolerance = drawn_->effort().tolerance;
+    return more;
+}
+
+/// No number of lines would do, and there is another way.
+bool BundlesTransport::out_of_reach(const SolutionError& error) const {
+    return error.all > 1.02 * options_.error && error.measured && kRoom * error.model > options_.error && reach_ &&
+           reach_->may_give_up;
 }
 
 /// Bent normals, and light maps as [F] places them, showing the solved light.
@@ -220,24 +254,16 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     for (int attempt = 1;; ++attempt) {
         lit = light(environment, progress, solution.report);
         error = judge(lit, environment, progress, solution.report);
-        if (!adaptive_ || error.all <= 1.02 * options_.error)
+        if (!adaptive_)
             break;
-        if (error.measured && kRoom * error.model > options_.error && reach_ && reach_->may_give_up) {
+        if (out_of_reach(error)) {
             reach_->gave_up = true;
             return solution;
         }
-        const double ratio = lit.sampling_error / sampling_error_for(options_.error, error.model);
-        if (ratio <= 1.05 || attempt == kMostAttempts)
+        const std::optional<BundleEffort> more = more_lines(lit, error);
+        if (!more || attempt == kMostAttempts)
             break;
-        const int directions = drawn_->effort().lines.sky_directions + drawn_->effort().lines.link_directions;
-        // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
-        const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
-        BundleEffort more =
-            effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), mean_leaf_albedo(scene_), options_.seed);
-        if (more.lines.sky_directions + more.lines.link_directions <= directions)
-            break;
-        more.tolerance = drawn_->effort().tolerance;
-        draw(more, progress);
+        draw(*more, progress);
         solution.report.append(pending_);
         pending_ = {};
         last_radiance_ = lit.light.radiance;

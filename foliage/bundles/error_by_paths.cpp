@@ -12,8 +12,10 @@
 namespace kokage::bundles {
 namespace {
 
-constexpr std::uint32_t kLeaves = 192, kFirstPaths = 32, kMostPaths = 1 << 16;
-constexpr double kUncertainty = 0.15;
+constexpr std::uint32_t kLeaves = 192;
+constexpr std::uint32_t kFirstPaths = 32, kMostPathsASide = 1 << 16; // of a side
+constexpr std::uint64_t kMostPaths = 50000, kMostPathsInDoubt = 200000;
+constexpr double kUncertainty = 0.15, kDoubt = 0.21;
 
 std::vector<glm::vec3> chosen_sides(const std::vector<glm::vec3>& sides, const std::vector<std::uint32_t>& leaves) {
     std::vector<glm::vec3> chosen;
@@ -242,31 +244,39 @@ ErrorByPaths::ErrorByPaths(const PatchScene& scene)
 
 MeasuredError ErrorByPaths::measure(const JudgedSides& judged, const Environment& environment,
                                     const std::vector<Optics>& optics, int max_bounces, std::uint64_t seed,
-                                    std::uint64_t most_paths, Progress& progress) {
+                                    TracedSides& traced, Progress& progress) {
     if (scene_.leaf_count == 0)
         return {};
-    TracedSides traced;
-    traced.leaves = sample_leaves(leaf_areas_, kLeaves, seed);
+    const std::vector<std::uint32_t> leaves = sample_leaves(leaf_areas_, kLeaves, seed);
     std::vector<bool> chosen(scene_.leaf_count, false);
-    for (std::uint32_t leaf : traced.leaves)
+    for (std::uint32_t leaf : leaves)
         chosen[leaf] = true;
     PathTracerOptions options;
     options.max_bounces = max_bounces;
     options.optics = optics;
     const PathTracer tracer(queries_, environment, options);
     SidePaths paths(scene_, points_, hash64(seed) + 0xc4ec, chosen);
-    const std::uint64_t sides_traced = 2 * std::uint64_t(traced.leaves.size());
-    for (std::uint32_t count = kFirstPaths;; count *= 2) {
+    const std::uint64_t sides_traced = 2 * std::uint64_t(leaves.size());
+    for (std::uint32_t count = std::max(kFirstPaths, traced.paths_a_side);; count *= 2) {
         progress.begin("checking by paths", scene_.patches.size());
         paths.extend_to(count, tracer, progress);
-        traced.first = chosen_sides(leaf_side_radiance(scene_, paths.radiance(optics, 0)), traced.leaves);
-        traced.second = chosen_sides(leaf_side_radiance(scene_, paths.radiance(optics, 1)), traced.leaves);
-        MeasuredError result = error_beneath_noise(judged, traced);
+        TracedSides all = traced;
+        auto add = [&](int half, std::vector<glm::vec3>& sides) {
+            const std::vector<glm::vec3> more =
+                chosen_sides(leaf_side_radiance(scene_, paths.radiance(optics, half)), leaves);
+            sides.insert(sides.end(), more.begin(), more.end());
+        };
+        all.leaves.insert(all.leaves.end(), leaves.begin(), leaves.end());
+        add(0, all.first);
+        add(1, all.second);
+        all.paths_a_side = count;
+        MeasuredError result = error_beneath_noise(judged, all);
         result.paths = paths.paths_traced();
-        // Small errors hide deeper in the noise.
-        const std::uint64_t allowed = result.uncertainty > 1.4 * kUncertainty ? 4 * most_paths : most_paths;
-        if (result.uncertainty <= kUncertainty || 2 * count * sides_traced > allowed || count >= kMostPaths)
+        const std::uint64_t most = result.uncertainty > kDoubt ? kMostPathsInDoubt : kMostPaths;
+        if (result.uncertainty <= kUncertainty || 2 * count * sides_traced > most || count >= kMostPathsASide) {
+            traced = std::move(all);
             return result;
+        }
     }
 }
 

@@ -15,9 +15,9 @@
 namespace kokage::bundles {
 
 struct MeasuredError {
-    double error = 0;       ///< MRE (DESIGN 3)
-    double uncertainty = 0; ///< standard error of `error`, as a share of it; at most 1
-    std::uint64_t paths = 0;
+    double error = 0;        ///< MRE (see foliage/accuracy.h)
+    double uncertainty = 0;  ///< standard error of `error`, as a share of it; at most 1
+    std::uint64_t paths = 0; ///< that were traced for it
 };
 
 /// A solution's leaf sides, as leaf_side_radiance() gives them.
@@ -30,6 +30,7 @@ struct JudgedSides {
 struct TracedSides {
     std::vector<std::uint32_t> leaves;
     std::vector<glm::vec3> first, second;
+    std::uint32_t paths_a_side = 0;
 };
 
 /// The error beneath the noise of few paths. In each class of brightness the mean of |solution - paths| holds error and
@@ -48,10 +49,13 @@ std::vector<std::uint32_t> sample_leaves(const std::vector<double>& leaf_areas, 
 class ErrorByPaths {
   public:
     explicit ErrorByPaths(const PatchScene& scene);
-    /// Traces until the uncertainty is 15 %, or `most_paths` would be exceeded (four times as many if it is above 30
-    /// %). `max_bounces` as in ShadingOptions. No leaves: no error.
+    /// Traces until the uncertainty is 15 %, but not more than 50,000 paths (200,000 while it is above 21 %), and never
+    /// fewer than 12,000, whatever the size of the tree (of 192 leaves or more). `max_bounces` as in ShadingOptions. No
+    /// leaves: no error.
+    /// `traced`: what was traced before of the same light, with other seeds, is used, too, and as many paths a side are
+    /// traced at least; what is traced now is added.
     MeasuredError measure(const JudgedSides& judged, const Environment& environment, const std::vector<Optics>& optics,
-                          int max_bounces, std::uint64_t seed, std::uint64_t most_paths, Progress& progress);
+                          int max_bounces, std::uint64_t seed, TracedSides& traced, Progress& progress);
     std::size_t bytes() const { return queries_.bytes() + points_.bytes(); }
 
   private:

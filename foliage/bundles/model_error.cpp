@@ -1,6 +1,8 @@
 #include "foliage/bundles/model_error.h"
 
+#include "common/services/random.h"
 #include "foliage/bundles/half_difference.h"
+#include "foliage/bundles/light_shares.h"
 
 #include <algorithm>
 #include <cmath>
@@ -44,52 +46,70 @@ ModelError::ModelError(const PatchScene& scene, const Facets& facets, double ass
     : scene_(scene), assumed_(assumed),
       largest_(is_ordinary_crown(scene, facets) ? 2.1 * assumed : std::numeric_limits<double>::infinity()) {}
 
-ModelError::Measured ModelError::conditions(const LightAndMatter& now) {
-    Measured conditions;
+ModelError::Conditions ModelError::conditions(const LightAndMatter& now) {
+    if (!centre_) {
+        glm::dvec3 sum(0.0);
+        for (const glm::vec3& position : scene_.positions)
+            sum += glm::dvec3(position);
+        centre_ = glm::vec3(sum / double(std::max<std::size_t>(scene_.positions.size(), 1)));
+    }
+    Conditions conditions;
     for (const DistantLight& light : now.environment.distant_lights)
         conditions.lights.push_back(light.direction);
     for (const PointLight& light : now.environment.point_lights)
         conditions.lights.push_back(light.position);
+    conditions.shares = light_shares(now.environment, *centre_, scene_.ground.has_value());
     conditions.optics = now.optics;
     return conditions;
 }
 
-std::optional<SolutionError> ModelError::known(double sampling_error, const LightAndMatter& now) const {
-    constexpr double kTolerated = 1.35;
+/// The share of light that comes from elsewhere; 1 if a light moved or leaves changed.
+double ModelError::moved(const Conditions& before, const Conditions& now) {
+    return before.lights == now.lights && same_optics(before.optics, now.optics)
+               ? moved_light(before.shares, now.shares)
+               : 1.0;
+}
+
+SolutionError ModelError::error(double sampling_error) const {
+    constexpr double kLeast = 0.25; // of the sampling error's square, if halves differ by more than paths confirm
+    const double sampling = sampling_error * sampling_error;
+    return {std::sqrt(std::max(sampling + measured_->beyond, kLeast * sampling)),
+            std::sqrt(std::max(measured_->beyond, 0.0)), true};
+}
+
+std::optional<SolutionError> ModelError::known(double sampling_error, const LightAndMatter& now) {
+    constexpr double kTolerated = 1.35, kMuchMoved = 1.0 / 7;
     const double assumed = std::hypot(sampling_error, assumed_);
     if (std::hypot(sampling_error, largest_) < kTolerated * assumed)
         return SolutionError{assumed, assumed_, false};
-    if (!measured_)
+    if (!measured_ || moved(measured_->conditions, conditions(now)) > kMuchMoved)
         return {};
-    const Measured conditions_now = conditions(now);
-    if (measured_->lights != conditions_now.lights || !same_optics(measured_->optics, conditions_now.optics))
-        return {};
-    return SolutionError{std::hypot(sampling_error, measured_->model_error), measured_->model_error, true};
+    return error(sampling_error);
 }
 
 SolutionError ModelError::measure(double sampling_error, const std::vector<Rgb>& radiance,
                                   const std::vector<Rgb>& half_differences, const LightAndMatter& now,
-                                  std::uint64_t seed, std::uint64_t fragments, Progress& progress, WorkReport& report) {
-    constexpr std::uint64_t kFragmentsAPath = 300, kPathsInAnyCase = 50000;
+                                  std::uint64_t seed, Progress& progress, WorkReport& report) {
     if (!paths_)
         paths_ = std::make_unique<ErrorByPaths>(scene_);
-    const MeasuredError found = paths_->measure({leaf_sides(scene_, radiance), leaf_sides(scene_, half_differences)},
-                                                now.environment, now.optics, now.max_bounces, seed,
-                                                std::max(fragments / kFragmentsAPath, kPathsInAnyCase), progress);
+    Measured next;
+    next.conditions = conditions(now);
+    if (measured_ && moved(measured_->conditions, next.conditions) == 0)
+        next = *measured_;
+    const std::uint64_t other_seed = next.times == 0 ? seed : hash64(seed + std::uint64_t(next.times));
+    const MeasuredError found =
+        paths_->measure({leaf_sides(scene_, radiance), leaf_sides(scene_, half_differences)}, now.environment,
+                        now.optics, now.max_bounces, other_seed, next.traced, progress);
     report.counts.push_back({"paths that checked the error", found.paths});
     // What both ways say, each weighted by how well it knows; the halves don't see the model error, so that their word
     // counts only where paths are uncertain.
     const double guess = std::isfinite(largest_) ? 0.2 : 0.3; // how far off the assumed error would be, about
     const double trust = 1 / (1 + std::pow(found.uncertainty / guess, 4));
-    const double square =
-        trust * found.error * found.error + (1 - trust) * (sampling_error * sampling_error + assumed_ * assumed_);
-    SolutionError error;
-    error.all = std::sqrt(square);
-    error.model = std::sqrt(std::max(square - sampling_error * sampling_error, 0.0));
-    error.measured = true;
-    measured_ = conditions(now);
-    measured_->model_error = error.model;
-    return error;
+    next.beyond =
+        trust * (found.error * found.error - sampling_error * sampling_error) + (1 - trust) * assumed_ * assumed_;
+    ++next.times;
+    measured_ = std::move(next);
+    return error(sampling_error);
 }
 
 } // namespace kokage::bundles

@@ -8,7 +8,7 @@
 
 namespace kokage::bundles {
 
-/// Error of a solution (MRE, DESIGN 3).
+/// Error of a solution (MRE; see foliage/accuracy.h).
 struct SolutionError {
     double all = 0;   ///< with the sampling error
     double model = 0; ///< of that, what more lines would not mend
@@ -28,30 +28,44 @@ class ModelError {
     ModelError(const PatchScene& scene, const Facets& facets, double assumed);
 
     /// The error where nothing need be measured: the sampling error, which halves of the lines show, dwarfs what there
-    /// may be beside it; or there was a measurement since when no light moved and no leaf changed its colour. Empty
-    /// where there is need.
-    std::optional<SolutionError> known(double sampling_error, const LightAndMatter& now) const;
-    /// `radiance` and `half_differences` per side. `fragments`, of all lines: paths take at most about a quarter of the
-    /// time that they took, though what a few leaves need is always traced.
+    /// may be beside it; or there was a measurement since when no light moved, no leaf changed its colour, and at most
+    /// a seventh of the light came to come from elsewhere (another sky, a stronger lamp). Empty where there is need.
+    std::optional<SolutionError> known(double sampling_error, const LightAndMatter& now);
+    /// Measures, by paths to a few leaves, and remembers. `radiance` and `half_differences` per side. Called again for
+    /// the same solution, it takes other leaves and other paths and gives what both say together.
     SolutionError measure(double sampling_error, const std::vector<Rgb>& radiance,
                           const std::vector<Rgb>& half_differences, const LightAndMatter& now, std::uint64_t seed,
-                          std::uint64_t fragments, Progress& progress, WorkReport& report);
-    /// Forgets the last measurement (when lines are drawn anew).
+                          Progress& progress, WorkReport& report);
+    /// True if what known() tells was measured twice. Who stops at the first estimate that is low enough meets lucky
+    /// ones more often than not: it takes a second look.
+    bool measured_twice() const { return measured_ && measured_->times > 1; }
+    /// Forgets the last measurement (when lines are drawn anew: it told of other lines, and few of them tell little of
+    /// what is left without them).
     void forget() { measured_.reset(); }
     std::size_t bytes() const { return paths_ ? paths_->bytes() : 0; }
 
   private:
-    struct Measured {
-        double model_error = 0;
+    /// What an error depends on, beside the lines.
+    struct Conditions {
         std::vector<glm::vec3> lights; ///< where they stand
+        std::vector<glm::vec3> shares; ///< see light_shares.h
         std::vector<Optics> optics;
     };
-    static Measured conditions(const LightAndMatter& now);
+    struct Measured {
+        double beyond = 0; ///< the square of the error less that of the sampling error; may be negative
+        Conditions conditions;
+        TracedSides traced;
+        int times = 0;
+    };
+    Conditions conditions(const LightAndMatter& now);
+    static double moved(const Conditions& before, const Conditions& now);
+    SolutionError error(double sampling_error) const;
 
     const PatchScene& scene_;
     double assumed_, largest_;
     std::optional<Measured> measured_;
     std::unique_ptr<ErrorByPaths> paths_; ///< built for the first measurement
+    std::optional<glm::vec3> centre_;     ///< found when it is first needed
 };
 
 } // namespace kokage::bundles

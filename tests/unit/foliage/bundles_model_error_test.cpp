@@ -143,6 +143,85 @@ TEST(BundlesModelError, LightThatIsUnevenOverALeafIsSeen) {
     EXPECT_LT(*relit.estimated_error, relit_error * 1.5);
 }
 
+std::ptrdiff_t checks(const Solution& solution) {
+    return std::count_if(solution.report.counts.begin(), solution.report.counts.end(),
+                         [](const WorkReport::Count& count) { return count.name == "paths that checked the error"; });
+}
+
+TEST(BundlesModelError, IsMeasuredAgainUnderAnotherSkyOrLamp) {
+    const test::SmallTree small = leaves_on_a_half_lit_card();
+    ShadingOptions options;
+    options.effort = 640;
+    const Environment sun = sun_overhead();
+    Environment weak = sun, stronger = sun, above = sun, brighter = sun;
+    weak.distant_lights[0].irradiance *= 1e-4f;
+    stronger.distant_lights[0].irradiance *= 1.1f;
+    for (float& value : brighter.remainder.pixels)
+        value *= 3;
+    brighter.distant_lights[0].irradiance *= 3;
+    above = weak;
+    above.remainder = Image(8, 4, 3);
+    std::fill(above.remainder.at(0, 0), above.remainder.at(0, 0) + 3 * 8, 1.f); // only near the zenith
+    const auto transport = make_transport(small.scene, small.tree, options, silent_progress());
+    auto relit = [&](const Environment& environment) { return transport->solve(environment, silent_progress()); };
+    const double even = *relit(weak).estimated_error;
+    const Solution sunny = relit(sun), zenith = relit(above);
+    EXPECT_EQ(checks(sunny), 1);
+    EXPECT_EQ(checks(zenith), 1);
+    const double fresh = *make_transport(small.scene, small.tree, options, silent_progress())
+                              ->solve(sun, silent_progress())
+                              .estimated_error;
+    EXPECT_NEAR(*sunny.estimated_error, fresh, 0.2 * fresh);
+    EXPECT_LT(even, 0.5 * fresh) << "or this test would show nothing";
+    EXPECT_EQ(checks(relit(sun)), 1);
+    EXPECT_EQ(checks(relit(sun)), 0);
+    EXPECT_EQ(checks(relit(stronger)), 0) << "much the same light";
+    EXPECT_EQ(checks(relit(brighter)), 0) << "the same light, brighter";
+}
+
+TEST(BundlesModelError, ResultsAreTakenAfterASecondLook) {
+    const test::SmallTree small = leaves_on_a_half_lit_card();
+    ShadingOptions options;
+    options.error = 2;
+    const auto transport = make_transport(small.scene, small.tree, options, silent_progress());
+    EXPECT_EQ(checks(transport->solve(sun_overhead(), silent_progress())), 2);
+    EXPECT_EQ(checks(transport->solve(sun_overhead(), silent_progress())), 0);
+    options.effort = 40; // nothing is decided by it
+    EXPECT_EQ(checks(make_transport(small.scene, small.tree, options, silent_progress())
+                         ->solve(sun_overhead(), silent_progress())),
+              1);
+}
+
+TEST(BundlesErrorByPaths, ASecondMeasurementIsPutTogetherWithTheFirst) {
+    const test::SmallTree small = test::ball_on_a_skeleton(1000, 2, test::realistic_leaf());
+    const Environment environment = test::sky_and_sun();
+    const PathTracedReference truth = path_trace_reference(small.scene, environment, 256, 1, silent_progress());
+    JudgedSides judged{truth.sides, {}};
+    Random random(3);
+    for (glm::vec3& side : judged.radiance) {
+        side *= 1 + 0.2f * float(normal_number(random));
+        judged.half_differences.push_back(0.1f * side);
+    }
+    ErrorByPaths paths(small.scene);
+    TracedSides traced;
+    auto measure = [&](std::uint64_t seed) {
+        return paths.measure(judged, environment, small.scene.optics, 0, seed, traced, silent_progress());
+    };
+    measure(1);
+    const TracedSides first = traced;
+    const MeasuredError both = measure(2);
+    ASSERT_GT(traced.leaves.size(), 3 * first.leaves.size() / 2);
+    EXPECT_TRUE(std::equal(first.first.begin(), first.first.end(), traced.first.begin()));
+    EXPECT_GE(traced.paths_a_side, first.paths_a_side);
+    EXPECT_NE(std::vector(traced.leaves.begin() + std::ptrdiff_t(first.leaves.size()), traced.leaves.end()),
+              first.leaves);
+    EXPECT_EQ(both.error, error_beneath_noise(judged, traced).error);
+    EXPECT_LE(both.paths, 200000u);
+    const double error =
+        accuracy(judged.radiance, truth.sides, solid_areas(small.scene)).mre; // much more than the noise of the truth
+    EXPECT_NEAR(both.error, error, 0.2 * error);
+}
+
 TEST(BundlesModelError, WhatCanNotBeReachedIsTracedByPathsAndSaid) {
     const test::SmallTree small = leaves_on_a_half_lit_card(); // it has no tree to divide
     const Environment environment = sun_overhead();
@@ -311,6 +390,7 @@ TEST(BundlesSteps, ASolveThatWasStoppedWhileMoreLinesWereDrawnGoesOnWithTheOldOn
                              [&](const WorkReport::Stage& stage) { return stage.name == name; });
     };
     EXPECT_GE(stages("line bundles"), 2);
+    EXPECT_GE(checks(solution), stages("line bundles") + 1) << "of all lines, and twice of the last";
     EXPECT_GE(expect_stops_change_nothing(small, test::sky_and_sun(), options), 2);
 }
 
