@@ -16,6 +16,7 @@
 #include <cmath>
 #include <optional>
 #include <string>
+#include <string_view>
 
 namespace kokage {
 namespace {
@@ -29,6 +30,22 @@ double sampling_error_for(double error, double model_error) {
 
 /// A fifth of room for sampling: with less, the number of lines runs away.
 constexpr double kRoom = 1.2;
+
+/// Light maps as [F] places them, showing the solved light; none where the tree is not the scene's.
+void add_light_maps(const PatchScene& scene, const Tree& tree, const ShadingOptions& options,
+                    const Environment& environment, Solution& solution, Progress& progress) {
+    constexpr int kDefaultMaps = 15;
+    if (scene.leaf_count != tree.leaves.size() || scene.leaf_count == 0)
+        return;
+    const RayQueries queries(scene);
+    const GroundCells ground = make_ground_cells(scene);
+    LightMapFieldOptions maps;
+    maps.maps = options.maps > 0 ? options.maps : kDefaultMaps;
+    maps.bands = options.bands;
+    LightMapField field(queries, ground, tree, maps, progress);
+    field.update(solution.radiance, {});
+    solution.light_maps = field.export_maps(cell_means(field.maps().directions(), environment.remainder));
+}
 
 class BundlesTransport : public Transport {
   public:
@@ -169,17 +186,28 @@ void BundlesTransport::fill(Solution& solution, const Lit& lit) const {
     }
 }
 
+/// Luminance of what both sides of a patch absorb, by area. Told from what they send out, (rho + tau) / pi of what they
+/// receive together, so that it fits the light that leaves; black ones from what they receive.
+double absorbed(const Optics& optics, const glm::vec3& leaving, const glm::vec3& received) {
+    const glm::vec3 albedo = optics.reflectance + optics.transmittance;
+    glm::vec3 absorbed(0.f);
+    for (std::size_t c = 0; c < 3; ++c)
+        absorbed[c] = (1 - albedo[c]) * (albedo[c] > 1e-3f ? kPi * leaving[c] / albedo[c] : received[c]);
+    return luminance(absorbed);
+}
+
 void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
     const double to_square_metres = 1 / (drawn_->facets().scale * drawn_->facets().scale);
     for (std::size_t p = 0; p < scene_.patches.size(); ++p) {
         const double area = drawn_->facets().patch_area[p] * to_square_metres;
-        const Optics& optics = optics_[scene_.patches[p].optics];
-        for (int k = 0; k < 2; ++k) {
-            const std::size_t s = 2 * p + std::size_t(k);
-            solution.energy_in += area * luminance(lit.outside.irradiance[s].vec());
-            solution.energy_absorbed +=
-                area * luminance((1.f - optics.reflectance - optics.transmittance) * lit.irradiance[s].vec());
-            solution.energy_escaped += area * kPiDouble * lit.outside.open[s] * luminance(lit.light.radiance[s].vec());
+        const std::size_t front = 2 * p, back = front + 1;
+        solution.energy_absorbed += area * absorbed(optics_[scene_.patches[p].optics],
+                                                    lit.light.radiance[front].vec() + lit.light.radiance[back].vec(),
+                                                    lit.irradiance[front].vec() + lit.irradiance[back].vec());
+        for (std::size_t side : {front, back}) {
+            solution.energy_in += area * luminance(lit.outside.irradiance[side].vec());
+            solution.energy_escaped +=
+                area * kPiDouble * lit.outside.open[side] * luminance(lit.light.radiance[side].vec());
         }
     }
 }
@@ -226,21 +254,12 @@ bool BundlesTransport::out_of_reach(const SolutionError& error) const {
            reach_->may_give_up;
 }
 
-/// Bent normals, and light maps as [F] places them, showing the solved light.
+/// Bent normals, and light maps.
 void BundlesTransport::add_host_data(const Environment& environment, Solution& solution, Progress& progress) const {
     Stopwatch watch;
     solution.bent_normal = mean_open_directions(drawn_->facets(), drawn_->transport());
-    if (tree_ && scene_.leaf_count == tree_->leaves.size() && scene_.leaf_count > 0) {
-        constexpr int kDefaultMaps = 15;
-        const RayQueries queries(scene_);
-        const GroundCells ground = make_ground_cells(scene_);
-        LightMapFieldOptions maps;
-        maps.maps = options_.maps > 0 ? options_.maps : kDefaultMaps;
-        maps.bands = options_.bands;
-        LightMapField field(queries, ground, *tree_, maps, progress);
-        field.update(solution.radiance, {});
-        solution.light_maps = field.export_maps(cell_means(field.maps().directions(), environment.remainder));
-    }
+    if (tree_)
+        add_light_maps(scene_, *tree_, options_, environment, solution, progress);
     solution.report.stages.push_back({"bent normals and light maps", watch.cpu(), watch.wall()});
 }
 
@@ -286,12 +305,34 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     return solution;
 }
 
+/// Says from the start that paths are traced instead of bundles, which may take long.
+class ProgressInstead : public Progress {
+  public:
+    explicit ProgressInstead(Progress& progress) : progress_(progress) {}
+    void begin(std::string_view stage, std::size_t total) override {
+        progress_.begin(std::string(stage) + " instead of bundles, which can't reach the asked error", total);
+    }
+    void advance(std::size_t steps) override { progress_.advance(steps); }
+    bool stop_requested() const override { return progress_.stop_requested(); }
+
+  private:
+    Progress& progress_;
+};
+
 /// Path tracing where bundles can't reach the asked error; the report says so.
 class PathTracedInstead : public Transport {
   public:
-    explicit PathTracedInstead(std::unique_ptr<Transport> transport) : transport_(std::move(transport)) {}
+    PathTracedInstead(const PatchScene& scene, const Tree& tree, const ShadingOptions& options, Progress& progress)
+        : scene_(scene), tree_(tree), options_(options),
+          transport_(make_path_traced_transport(scene, tree, options, progress)) {}
     Solution solve(const Environment& environment, Progress& progress) override {
-        Solution solution = transport_->solve(environment, progress);
+        ProgressInstead instead(progress);
+        Solution solution = transport_->solve(environment, instead);
+        if (options_.for_hosts) {
+            Stopwatch watch;
+            add_light_maps(scene_, tree_, options_, environment, solution, progress);
+            solution.report.stages.push_back({"light maps", watch.cpu(), watch.wall()});
+        }
         solution.report.warnings.push_back(
             "paths were traced instead of bundles: one radiance a leaf side, even in parts, "
             "can't reach the asked error");
@@ -301,6 +342,9 @@ class PathTracedInstead : public Transport {
     std::size_t bytes() const override { return transport_->bytes(); }
 
   private:
+    const PatchScene& scene_;
+    const Tree& tree_;
+    const ShadingOptions options_;
     std::unique_ptr<Transport> transport_;
 };
 
@@ -333,7 +377,7 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
             scene, tree, 1, [&](const PatchScene& parts) { return make(parts, kUniformSideError / 2, reach, stop); });
     };
     auto paths = [&scene, &tree, options](Reach&, Progress& stop) -> std::unique_ptr<Transport> {
-        return std::make_unique<PathTracedInstead>(make_path_traced_transport(scene, tree, options, stop));
+        return std::make_unique<PathTracedInstead>(scene, tree, options, stop);
     };
     std::vector<StepMaker> steps; // those that are out of reach for any crown are left out
     if (options.error >= kRoom * kUniformSideError)

@@ -239,6 +239,31 @@ TEST(BundlesModelError, WhatCanNotBeReachedIsTracedByPathsAndSaid) {
              "paths were traced"));
 }
 
+TEST(BundlesModelError, PathsInsteadOfBundlesGiveHostsTheSameThings) {
+    class Stages : public Progress {
+      public:
+        void begin(std::string_view stage, std::size_t) override { all += std::string(stage) + "; "; }
+        std::string all;
+    };
+    const test::SmallTree small = test::ball_on_a_skeleton(60, 3, test::realistic_leaf());
+    ShadingOptions options;
+    options.error = 0.05;
+    options.for_hosts = true;
+    auto solve = [&](Progress& progress) {
+        return make_transport(small.scene, small.tree, options, progress)->solve(test::sky_and_sun(), progress);
+    };
+    const Solution bundles = solve(silent_progress());
+    ASSERT_FALSE(says(bundles, "paths were traced"));
+    options.error = 0.006;
+    Stages stages;
+    const Solution paths = solve(stages);
+    ASSERT_TRUE(says(paths, "paths were traced"));
+    EXPECT_NE(stages.all.find("instead of bundles"), std::string::npos) << stages.all;
+    EXPECT_EQ(paths.bent_normal.size(), bundles.bent_normal.size());
+    ASSERT_GT(bundles.light_maps.size(), 0u);
+    EXPECT_EQ(paths.light_maps.size(), bundles.light_maps.size());
+}
+
 /// Gives up if it may and is told to; else returns its number as the error.
 class Step : public Transport {
   public:
