@@ -162,7 +162,7 @@ Command compare_command(CLI::App& program) {
                 check_distinct({options->reference, options->error_map, options->report});
                 if (is_tree(options->picture) != is_tree(options->reference))
                     throw InputError("'" + options->picture.string() + "' and '" + options->reference.string() +
-                                     "' are a tree and a picture; compare two of one kind");
+                                     "' are not of one kind; compare two shaded trees, or two pictures");
                 if (is_tree(options->picture))
                     compare_trees(*options, context);
                 else

@@ -109,6 +109,10 @@ void complete_method(ShadeOptions& o) {
     s.method = method_from_name(o.method);
     refuse_idle_options(o);
     s.effort = o.effort.value_or(s.effort);
+    constexpr int kMostDirections = 20480;
+    if (s.method == Method::bundles && o.effort && (s.effort < 4 || s.effort > kMostDirections))
+        throw InputError("--effort: bundles takes 4 to " + std::to_string(kMostDirections) + " directions, not " +
+                         std::to_string(s.effort));
     s.maps = o.maps.value_or(s.maps);
     s.bands = o.bands.value_or(s.bands);
     if (o.gather && *o.gather != "rule" && *o.gather != "cosine")

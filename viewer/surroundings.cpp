@@ -102,7 +102,9 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
     app.add_option("--light", s.lights,
                    "A light more (what the ground hides is left out): sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  "
                    "directional:AZ,EL,R,G,B  "
-                   "point:X,Y,Z,R,G,B; may be repeated")
+                   "point:X,Y,Z,R,G,B; may be repeated. Angles in degrees, places in metres; R,G,B is the irradiance "
+                   "on a surface that faces the light (point: at 1 m). sun is a disc of the sun's size, directional "
+                   "has none")
         ->type_name("LIGHT")
         ->allow_extra_args(false)
         ->group("Light");

@@ -50,7 +50,8 @@ namespace {
 std::vector<unsigned char> read_bytes(const std::filesystem::path& path) {
     std::error_code error;
     if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(path.string() + ": no such file");
+        throw InputError(path.string() +
+                         (std::filesystem::exists(path, error) ? ": not a regular file" : ": no such file"));
     std::ifstream file(path, std::ios::binary | std::ios::ate);
     if (!file)
         throw InputError(path.string() + ": cannot be opened for reading");

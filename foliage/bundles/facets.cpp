@@ -10,7 +10,7 @@ namespace {
 // Two triangles are taken to lie in one plane when their normals differ by less than about a degree.
 constexpr float kSamePlaneCosine = 0.9998f;
 // Bark has one radiance however its pieces are turned, so a tube's slightly twisted quads may pass as flat: within six
-// degrees, less than the sides of any tube make with each other.
+// degrees, less than the sides of a tube of up to 60 make with each other.
 constexpr float kNearlyFlatCosine = 0.995f;
 
 struct Outline {
