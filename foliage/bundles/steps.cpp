@@ -1,7 +1,23 @@
 #include "foliage/bundles/steps.h"
 
+#include <algorithm>
+
 namespace kokage::bundles {
 namespace {
+
+/// What was done more than once is counted together.
+void add_up_counts(WorkReport& report) {
+    std::vector<WorkReport::Count> counts;
+    for (const WorkReport::Count& count : report.counts) {
+        const auto same =
+            std::find_if(counts.begin(), counts.end(), [&](const auto& other) { return other.name == count.name; });
+        if (same == counts.end())
+            counts.push_back(count);
+        else
+            same->value += count.value;
+    }
+    report.counts = std::move(counts);
+}
 
 class Steps : public Transport {
   public:
@@ -17,6 +33,7 @@ class Steps : public Transport {
             before.append(solution.report);
             if (!reach_->gave_up) {
                 solution.report = std::move(before);
+                add_up_counts(solution.report);
                 return solution;
             }
             transport_.reset(); // the next step needs its memory

@@ -144,8 +144,8 @@ TEST(BundlesModelError, LightThatIsUnevenOverALeafIsSeen) {
 }
 
 std::ptrdiff_t checks(const Solution& solution) {
-    return std::count_if(solution.report.counts.begin(), solution.report.counts.end(),
-                         [](const WorkReport::Count& count) { return count.name == "paths that checked the error"; });
+    return std::count_if(solution.report.stages.begin(), solution.report.stages.end(),
+                         [](const WorkReport::Stage& stage) { return stage.name == "check by paths"; });
 }
 
 TEST(BundlesModelError, IsMeasuredAgainUnderAnotherSkyOrLamp) {
@@ -315,6 +315,7 @@ TEST(BundlesSteps, WhatIsReportedOfAStepThatGaveUpIsKept) {
         Solution solve(const Environment& environment, Progress& progress) override {
             Solution solution = Step::solve(environment, progress);
             solution.report.counts.push_back({"paths", 7});
+            solution.report.counts.push_back({"paths", 5});
             solution.report.skips.push_back({"a light", "weak", "a raster"});
             solution.report.warnings.push_back("a warning");
             return solution;
@@ -328,7 +329,8 @@ TEST(BundlesSteps, WhatIsReportedOfAStepThatGaveUpIsKept) {
         silent_progress());
     const Solution solution = steps->solve({}, silent_progress());
     EXPECT_EQ(solution.estimated_error, 2);
-    EXPECT_EQ(solution.report.counts.size(), 1u);
+    ASSERT_EQ(solution.report.counts.size(), 1u);
+    EXPECT_EQ(solution.report.counts[0].value, 12u) << "of all that was done";
     EXPECT_EQ(solution.report.skips.size(), 1u);
     EXPECT_TRUE(says(solution, "a warning"));
 }
