@@ -31,7 +31,7 @@ struct OutsideLight : SideLight {
 
 struct SweepLimits {
     double tolerance = 0.005; ///< stop when the light still missing is below this share of the whole
-    int max_bounces = 0;      ///< 0 = until the tolerance; else exactly that many bounces at most
+    int max_bounces = 0;      ///< 0 = until the tolerance; else exactly that many plain sweeps, from black
 };
 
 struct SweepResult {
@@ -59,8 +59,8 @@ class BounceOperator {
 
     /// Scales what has bounced so that its mean is free of what lines shared between bounces add. i sees j along a
     /// line, and the same line tells what j sees: i itself, and what lies behind j. Of the directions that light takes
-    /// to i through j these are too large a part, O(1 / lines), so crowns of little absorption come out a little too
-    /// bright. With the rows K_A, K_B of the halves and D half of what they make differ, a bounce has -1/2 (K_A - K_B)
+    /// to i through j these are too large a part, O(1 / lines), so crowns of little absorption come out a little
+    /// wrong. With the rows K_A, K_B of the halves and D half of what they make differ, a bounce has -1/2 (K_A - K_B)
     /// D too much or too little: in K_A X_B and K_B X_A no line is used twice.
     void remove_shared_lines(const SideLight (&outside)[2], const std::vector<Optics>& optics,
                              const std::vector<Rgb>& half_difference, SweepResult& light);

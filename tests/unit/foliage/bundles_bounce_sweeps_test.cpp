@@ -1,4 +1,5 @@
 // The sweeps against a dense solve, and what physics asks of them.
+#include "common/environment/lat_long.h"
 #include "foliage/bundles/bounce_sweeps.h"
 #include "foliage/bundles/outside_light.h"
 #include "tests/unit/foliage/small_trees.h"
@@ -17,8 +18,10 @@ struct TracedTree {
     PatchScene scene;
     Facets facets;
     BundleTransport transport;
-    explicit TracedTree(PatchScene tree, int directions = 16) : scene(std::move(tree)), facets(make_facets(scene)) {
+    explicit TracedTree(PatchScene tree, int directions = 16, std::uint64_t seed = 1)
+        : scene(std::move(tree)), facets(make_facets(scene)) {
         BundleSettings settings;
+        settings.seed = seed;
         settings.sky_directions = settings.link_directions = directions;
         transport = trace_bundles(scene, facets, settings, silent_progress());
     }
@@ -128,6 +131,63 @@ TEST(BundlesBounceSweeps, AccelerationGoesToTheSamePlaceInFewerSweeps) {
                       1e-4f * glm::length(plain.radiance[s].vec()))
                 << s;
     }
+}
+
+// What each half of the lines brings from above and from below is the light of that half of the surroundings, whatever
+// falls between its directions.
+TEST(BundlesBounceSweeps, EndsOfLinesBringAllOfTheSky) {
+    const Image& sky = test::sky_and_sun().remainder;
+    glm::dvec3 light[2] = {glm::dvec3(0), glm::dvec3(0)};
+    double solid_angle[2] = {0, 0};
+    for (int y = 0; y < sky.height; ++y)
+        for (int x = 0; x < sky.width; ++x) {
+            const int below = 2 * y >= sky.height;
+            const double weight = pixel_solid_angle(y, sky.width, sky.height);
+            light[below] += weight * glm::dvec3(sky.at(x, y)[0], sky.at(x, y)[1], sky.at(x, y)[2]);
+            solid_angle[below] += weight;
+        }
+    const LineDirections lines = make_line_directions(12, 5);
+    const EndRadiance ends = end_radiance(sky, lines);
+    for (const auto [from, to] : {std::pair(0u, lines.half), std::pair(lines.half, 12u)})
+        for (int below = 0; below < 2; ++below) {
+            glm::dvec3 mean(0.0);
+            for (std::uint32_t i = from; i < to; ++i)
+                mean += glm::dvec3(below ? ends.far_end[i] : ends.near_end[i]) / double(to - from);
+            EXPECT_LT(glm::distance(mean, light[below] / solid_angle[below]), 1e-4 * (1 + glm::length(mean)));
+        }
+}
+
+// Few lines, leaves that hardly absorb: lines that serve two bounces in a row shift the mean.
+TEST(BundlesBounceSweeps, TakingOutSharedLinesTakesTheirBiasAway) {
+    const PatchScene scene = test::random_crown(3000, 4, test::bright_leaf());
+    auto mean_radiance = [&](int directions, std::uint64_t seed, bool remove) {
+        const TracedTree tree(scene, directions, seed);
+        const OutsideLight outside = tree.outside(test::sky_and_sun());
+        const SkyLight sky =
+            gather_sky(scene, tree.facets, tree.transport, test::sky_and_sun().remainder, glm::vec3(0));
+        const SideLight halves[2] = {sky.halves[0], sky.halves[1]};
+        SweepLimits limits;
+        limits.tolerance = 1e-4;
+        BounceOperator bounces(tree.scene, tree.transport);
+        SweepResult result = bounces.solve(outside, tree.scene.optics, limits, {});
+        if (remove)
+            bounces.remove_shared_lines(halves, tree.scene.optics,
+                                        bounces.scatter_by_halves(halves, tree.scene.optics, result).half_difference,
+                                        result);
+        double sum = 0;
+        for (const Rgb& side : result.radiance)
+            sum += double(side.g) / double(result.radiance.size());
+        return sum;
+    };
+    const double truth = mean_radiance(400, 1, false);
+    double with_bias = 0, without = 0;
+    constexpr int kSeeds = 30;
+    for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
+        with_bias += mean_radiance(8, seed, false) / kSeeds;
+        without += mean_radiance(8, seed, true) / kSeeds;
+    }
+    EXPECT_GT(std::abs(with_bias / truth - 1), 0.001); // measured: -0.0018, and 0.0000 without
+    EXPECT_LT(std::abs(without - truth), 0.5 * std::abs(with_bias - truth));
 }
 
 TEST(BundlesBounceSweeps, ResidualsOfPlainSweepsFall) {
