@@ -148,7 +148,7 @@ TEST(BundlesBounceSweeps, EndsOfLinesBringAllOfTheSky) {
         }
     const LineDirections lines = make_line_directions(12, 5);
     const EndRadiance ends = end_radiance(sky, lines);
-    for (const auto [from, to] : {std::pair(0u, lines.half), std::pair(lines.half, 12u)})
+    for (const auto& [from, to] : {std::pair(0u, lines.half), std::pair(lines.half, 12u)})
         for (int below = 0; below < 2; ++below) {
             glm::dvec3 mean(0.0);
             for (std::uint32_t i = from; i < to; ++i)
