@@ -2,24 +2,10 @@
 // Growing a tree: parameters -> skeleton with numbered generations -> bark and leaves.
 #include "common/services/progress.h"
 #include "trees/growth/parameters.h"
+#include "trees/species.h"
 #include "trees/tree.h"
 
-#include <string_view>
-#include <vector>
-
 namespace kokage {
-
-struct Species {
-    std::string name, latin_name, summary;
-    GrowthParameters parameters;
-};
-
-/// Every species that can be grown, in the order of a list for people.
-const std::vector<Species>& all_species();
-/// By name ("oak"), whatever the case. Throws InputError that lists the names.
-const Species& find_species(std::string_view name);
-/// A pedunculate oak (Quercus robur) that grew in the open.
-GrowthParameters oak_parameters();
 
 /// Grows a tree: trunk and limbs, then branches by space colonisation (Runions et al. 2007), shoots, leaves and bark.
 /// It stands on y = 0 at the origin. The same parameters give the same bytes with any number of threads; leaves.size()

@@ -1,5 +1,7 @@
+#include "trees/species.h"
+
 #include "common/services/error.h"
-#include "trees/growth.h"
+#include "trees/species_texts.h"
 
 #include <algorithm>
 #include <cctype>
@@ -11,13 +13,13 @@ GrowthParameters oak_parameters() {
 }
 
 const std::vector<Species>& all_species() {
-    // The defaults of GrowthParameters are the oak's.
-    static const std::vector<Species> species = {
-        {"oak",
-         "Quercus robur",
-         "pedunculate oak grown in the open: stout trunk, wide zigzag limbs, broad domed crown",
-         {}},
-    };
+    static const std::vector<Species> species = [] {
+        std::vector<Species> all;
+        for (const SpeciesText& file : species_texts())
+            all.push_back(parse_species(file.text, std::string(file.name)));
+        std::sort(all.begin(), all.end(), [](const Species& a, const Species& b) { return a.name < b.name; });
+        return all;
+    }();
     return species;
 }
 
@@ -29,7 +31,8 @@ const Species& find_species(std::string_view name) {
             return species;
         known += (known.empty() ? "" : ", ") + species.name;
     }
-    throw InputError("no species is called '" + std::string(name) + "'; known species: " + known);
+    throw InputError("no species is called '" + std::string(name) + "'; known species: " + known +
+                     "; a file of your own ends in .json");
 }
 
 } // namespace kokage

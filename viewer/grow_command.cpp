@@ -1,6 +1,6 @@
 // `kokage grow`: a tree from a species, as glTF.
 #include "common/services/count_text.h"
-#include "common/services/error.h"
+#include "common/services/output_file.h"
 #include "common/services/stopwatch.h"
 #include "trees/growth.h"
 #include "trees/write_tree.h"
@@ -10,6 +10,7 @@
 #include "viewer/tree_source.h"
 #include "viewer/values.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -26,29 +27,38 @@ struct GrowOptions {
 };
 
 void print_species_list() {
+    std::size_t widest = 0;
     for (const Species& species : all_species())
-        std::printf("%-12s %-18s %s\n", species.name.c_str(), species.latin_name.c_str(), species.summary.c_str());
+        widest = std::max(widest, species.latin_name.size());
+    for (const Species& species : all_species())
+        std::printf("%-8s %-*s  %s\n", species.name.c_str(), int(widest), species.latin_name.c_str(),
+                    species.summary.c_str());
 }
 
-void print_parameters(const std::string& name) {
-    const Species& species = find_species(name);
-    std::printf("%s (%s): %s\n\n%-22s %-12s %-24s %s\n", species.name.c_str(), species.latin_name.c_str(),
-                species.summary.c_str(), "parameter", "value", "range", "meaning");
+void print_parameters(const Species& species) {
+    std::printf("%s (%s): %s\n", species.name.c_str(), species.latin_name.c_str(), species.summary.c_str());
+    for (const std::string& source : species.sources)
+        std::printf("  source: %s\n", source.c_str());
+    std::string group;
     for (const ParameterDescription& p : parameter_descriptions(species.parameters)) {
-        char value[32], range[64];
-        if (p.choices.empty()) {
-            std::snprintf(value, sizeof value, "%.10g", p.value);
-            std::snprintf(range, sizeof range, "%g to %g", p.low, p.high);
-        } else {
-            std::snprintf(value, sizeof value, "%s", p.choices[std::size_t(p.value - p.low)].c_str());
-            std::string names;
-            for (const std::string& choice : p.choices)
-                names += (names.empty() ? "" : ", ") + choice;
-            std::snprintf(range, sizeof range, "%s", names.c_str());
-        }
-        std::printf("%-22s %-12s %-24s %s%s%s\n", p.name.c_str(), value, range, p.meaning.c_str(),
-                    p.unit.empty() ? "" : " Unit: ", p.unit.c_str());
+        if (p.group != group)
+            std::printf("\n%s\n", (group = p.group).c_str());
+        std::printf("  %-22s %-10s %s (%s)%s\n", p.name.c_str(), value_text(p).c_str(), p.meaning.c_str(),
+                    range_text(p).c_str(), p.source.empty() ? "" : (" [" + p.source + "]").c_str());
     }
+}
+
+/// `--describe`: on the terminal, or with -o as a species file to start from.
+void describe_species(GrowOptions options) {
+    options.source.name = options.describe;
+    if (options.seed)
+        options.source.settings.push_back("seed=" + std::to_string(*options.seed));
+    const Species species = asked_species(options.source);
+    if (options.output.empty())
+        return print_parameters(species);
+    check_output(options.output, "the species file", {".json"});
+    check_distinct({options.output, options.source.file()});
+    write_file(options.output, species_file_text(species));
 }
 
 void grow_and_write(GrowOptions options, const CommandContext& context) {
@@ -81,9 +91,11 @@ void grow_and_write(GrowOptions options, const CommandContext& context) {
 Command grow_command(CLI::App& program) {
     const auto options = std::make_shared<GrowOptions>();
     CLI::App* app = program.add_subcommand("grow", "Grow a tree and write it as glTF");
-    app->footer("\nExample: kokage grow oak --seed 7 --leaves 50000 -o mine.glb");
-    app->add_option("SPECIES", options->source.name, "What to grow; --list names all")
-        ->type_name("NAME")
+    app->footer("\nExample: kokage grow oak --seed 7 --leaves 50000 -o mine.glb\n"
+                "         kokage grow --describe beech -o my-beech.json    a species file to change\n"
+                "         kokage grow my-beech.json");
+    app->add_option("SPECIES", options->source.name, "What to grow: a species (--list names all) or a file of your own")
+        ->type_name("NAME|FILE.json")
         ->capture_default_str();
     app->add_option("--seed", options->seed, "Which individual: the same seed gives the same tree (otherwise 1)")
         ->check(whole_number())
@@ -91,15 +103,18 @@ Command grow_command(CLI::App& program) {
         ->group("Tree");
     add_growing_options(*app, options->source);
     app->add_option("-o,--output", options->output, "Where to write it (otherwise SPECIES.glb here)")
-        ->type_name("TREE.glb");
+        ->type_name("FILE");
     app->add_flag("--list", options->list, "List the species and do nothing else");
-    app->add_option("--describe", options->describe, "List a species' parameters with values, ranges and meanings")
-        ->type_name("SPECIES");
+    app->add_option(
+           "--describe", options->describe,
+           "List a species' parameters with values, ranges, meanings and sources; with -o FILE.json as a species "
+           "file of your own to start from")
+        ->type_name("SPECIES|FILE");
     return {app, [options](const CommandContext& context) {
                 if (options->list)
                     print_species_list();
                 else if (!options->describe.empty())
-                    print_parameters(options->describe);
+                    describe_species(*options);
                 else
                     grow_and_write(*options, context);
             }};

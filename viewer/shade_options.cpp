@@ -178,7 +178,7 @@ void complete_outputs(ShadeOptions& o) {
         check_output(o.image, "the picture", {".png", ".exr", ".hdr"});
     if (!o.report.empty())
         check_output(o.report, "the report", {".json"});
-    const fs::path tree = o.tree.is_species() ? "" : fs::path(o.tree.name);
+    const fs::path tree = o.tree.file();
     check_distinct({tree, o.output, o.image, o.report});
     check_distinct({fs::path(o.surroundings.environment), o.output, o.image, o.report});
 }
@@ -204,7 +204,7 @@ void find_in_data(ShadeOptions& o) {
 } // namespace
 
 void add_shade_options(CLI::App& app, ShadeOptions& o) {
-    app.add_option("TREE", o.tree.name, "A species to grow, or a tree's file (.glb, .gltf)")
+    app.add_option("TREE", o.tree.name, "A species or species file (.json) to grow, or a tree's file (.glb, .gltf)")
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--data", o.data,

@@ -2,6 +2,7 @@
 #include "common/services/error.h"
 #include "trees/growth.h"
 #include "trees/read_tree.h"
+#include "viewer/output_check.h"
 
 #include <algorithm>
 #include <cctype>
@@ -12,34 +13,46 @@ namespace kokage {
 namespace fs = std::filesystem;
 namespace {
 
-GrowthParameters growth_parameters(const TreeSource& source) {
-    GrowthParameters parameters = find_species(source.name).parameters;
+bool is_species_file(const std::string& name) {
+    return lower_ending(name) == ".json";
+}
+
+} // namespace
+
+Species asked_species(const TreeSource& source) {
+    Species species = is_species_file(source.name) ? read_species(source.name) : find_species(source.name);
+    GrowthParameters& parameters = species.parameters;
     if (source.leaves)
         set_parameter(parameters, "leaves", std::to_string(*source.leaves));
     for (const std::string& setting : source.settings) {
         const std::size_t equals = setting.find('=');
         if (equals == 0 || equals == std::string::npos)
             throw InputError("--set: '" + setting + "' is not NAME=VALUE");
-        set_parameter(parameters, setting.substr(0, equals), setting.substr(equals + 1));
+        set_parameter(parameters, std::string_view(setting).substr(0, equals),
+                      std::string_view(setting).substr(equals + 1));
     }
     check_parameters(parameters);
-    return parameters;
+    return species;
 }
 
-} // namespace
-
 bool TreeSource::is_species() const {
+    if (is_species_file(name))
+        return true;
     std::string lower = name;
     std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     return std::any_of(all_species().begin(), all_species().end(), [&](const Species& s) { return s.name == lower; });
 }
 
+fs::path TreeSource::file() const {
+    return is_species() && !is_species_file(name) ? fs::path() : fs::path(name);
+}
+
 std::string TreeSource::stem() const {
-    return is_species() ? find_species(name).name : fs::path(name).stem().string();
+    return is_species() && !is_species_file(name) ? find_species(name).name : fs::path(name).stem().string();
 }
 
 void add_growing_options(CLI::App& app, TreeSource& source) {
-    app.add_option("--leaves", source.leaves, "Grown trees: number of leaves (oak: 30000)")
+    app.add_option("--leaves", source.leaves, "Grown trees: number of leaves (otherwise 30000)")
         ->type_name("N")
         ->group("Tree");
     app.add_option("--set", source.settings,
@@ -70,7 +83,7 @@ void check_tree_source(const TreeSource& source) {
     if (source.is_species()) {
         if (!source.foliage.empty() || source.leaf_size != 0 || source.scale != 1)
             throw InputError("--foliage, --leaf-size and --scale are for files; '" + source.name + "' is grown");
-        growth_parameters(source);
+        asked_species(source);
         return;
     }
     if (source.leaves || !source.settings.empty())
@@ -92,7 +105,7 @@ void check_tree_source(const TreeSource& source) {
 
 Tree obtain_tree(const TreeSource& source, Progress& progress) {
     if (source.is_species())
-        return grow(growth_parameters(source), progress);
+        return grow(asked_species(source).parameters, progress);
     return read_tree(source.name,
                      {.foliage_materials = source.foliage, .leaf_size = float(source.leaf_size), .scale = source.scale},
                      progress);

@@ -1,9 +1,11 @@
 #pragma once
-// The tree that a command works on: a species to grow or a file to load.
+// The tree that a command works on: a species to grow (one that is known, or a species file) or a tree's file to load.
 #include "common/services/progress.h"
+#include "trees/species.h"
 #include "trees/tree.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -11,15 +13,17 @@
 namespace kokage {
 
 struct TreeSource {
-    std::string name = "oak"; ///< a species or a file
+    std::string name = "oak"; ///< a species, a species file (.json) or a tree's file
     std::optional<int> leaves;
     std::vector<std::string> settings; ///< NAME=VALUE
     std::vector<std::string> foliage;  ///< files: names of foliage materials; empty = found out
     double leaf_size = 0;              ///< files: metres; 0 = found out
     double scale = 1;                  ///< files: metres per unit
 
-    /// True if `name` is a species rather than a file: a species' name always is.
+    /// True if `name` is to be grown rather than loaded: a species' name always is, and so is a species file.
     bool is_species() const;
+    /// The file that it is read from; empty if there is none.
+    std::filesystem::path file() const;
     /// What files made from it are called: "oak", or the file's stem.
     std::string stem() const;
 };
@@ -32,6 +36,9 @@ void add_loading_options(CLI::App& app, TreeSource& source);
 /// Throws InputError, before any work, if a value can't be: an unknown species that is no file either, a parameter out
 /// of range, options of growing for a file or of loading for a species.
 void check_tree_source(const TreeSource& source);
+
+/// The species to grow, with --leaves and --set in its parameters. Throws InputError.
+Species asked_species(const TreeSource& source);
 
 /// Grows or loads it. Throws InputError, Stopped.
 Tree obtain_tree(const TreeSource& source, Progress& progress);

@@ -18,11 +18,7 @@ struct GrowthParameters {
     std::uint64_t seed = 1;
     int leaves = 30000;
 
-    double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.4;
-    LeafForm leaf_form = LeafForm::outline;
-    int leaf_detail = 1;
-    double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0024, shoot_angle = 48;
-
+    // The crown, trunk, limbs, branches and bark: rows in parameters_of_wood.cpp.
     double leaf_area_index = 4.5, height_to_width = 0.84;
     double crown_base = 0.22, crown_widest = 0.36, crown_bottom = 0.76, crown_roundness = 2.0;
     int crown_lobes = 20;
@@ -35,16 +31,23 @@ struct GrowthParameters {
     double branch_zigzag = 16, branch_up = 0.1, pipe_exponent = 2.0;
 
     double root_flare = 0.9, bark_tile = 0.4;
+
+    // Shoots, leaves and looks: rows in parameters_of_leaves.cpp.
+    double leaves_per_shoot = 7, shoot_length = 0.13, shoot_radius = 0.0024, shoot_angle = 48;
+    double leaf_length = 0.10, leaf_length_spread = 0.2, leaf_width = 0.62, leaf_fold = 12, leaf_up = 1.4;
+    LeafForm leaf_form = LeafForm::outline;
+    int leaf_detail = 1;
     int textures = 1;
 };
 
 struct ParameterDescription {
-    std::string name, unit; ///< unit "m", "degrees", "of the height", ...; empty = a pure number
+    std::string name = {}, group = {}, unit = {}; ///< unit "m", "degrees", "of the height", ...; empty = a pure number
     double low = 0, high = 0;
     bool whole = false; ///< takes whole numbers only
     double value = 0;   ///< in the parameters that were asked about
-    std::string meaning;
-    std::vector<std::string> choices; ///< names of the values low..high, if they have names
+    std::string meaning = {};
+    std::string source = {};               ///< where the botany or physics comes from; empty = our own measure
+    std::vector<std::string> choices = {}; ///< names of the values low..high, if they have names
 };
 
 /// All parameters that set_parameter knows, in reading order, with their values in `parameters`.
@@ -54,7 +57,15 @@ std::vector<ParameterDescription> parameter_descriptions(const GrowthParameters&
 /// of range.
 void set_parameter(GrowthParameters& parameters, std::string_view name, std::string_view value);
 
+/// The same from a number. Throws InputError also where the parameter takes a name.
+void set_parameter(GrowthParameters& parameters, std::string_view name, double value);
+
 /// Throws InputError if a value is not finite or out of its range.
 void check_parameters(const GrowthParameters& parameters);
+
+/// A description's value as text, as set_parameter reads it: "0.1", "outline".
+std::string value_text(const ParameterDescription& description);
+/// What it takes, for people: "0.005 to 1 m", "outline or alpha".
+std::string range_text(const ParameterDescription& description);
 
 } // namespace kokage

@@ -35,7 +35,7 @@ TEST(Describe, WrongTreesAreRefusedInOneLine) {
     std::filesystem::create_directory(folder / "folder");
     const std::vector<std::pair<std::vector<std::string>, std::string>> wrongs = {
         {{"describe"}, "TREE"},
-        {{"describe", "baobab"}, "species: oak"},
+        {{"describe", "baobab"}, "species: aspen, beech"},
         {{"describe", "missing tree.glb"}, "missing tree.glb"},
         {{"describe", "folder"}, "folder"},
         {{"describe", "not a tree.glb"}, "not a tree.glb"},

@@ -46,9 +46,51 @@ TEST(Grow, ListsSpeciesAndParameters) {
     TemporaryFolder folder;
     EXPECT_NE(run_kokage({"grow", "--list"}, folder.path()).output.find("Quercus robur"), std::string::npos);
     const std::string parameters = run_kokage({"grow", "--describe", "oak"}, folder.path()).output;
-    for (const char* name : {"\nseed ", "\nleaves ", "\nleaf_form ", "\nheight_to_width "})
+    for (const char* name : {"\n  seed ", "\n  leaves ", "\n  leaf_form ", "\n  height_to_width "})
         EXPECT_NE(parameters.find(name), std::string::npos) << name;
     EXPECT_TRUE(folder.files().empty());
+}
+
+TEST(Grow, ASpeciesFileOfOnesOwnIsWrittenChangedAndGrown) {
+    TemporaryFolder folder;
+    const ProgramRun described = run_kokage(
+        {"grow", "--describe", "beech", "--set", "leaf_length=0.09", "--seed", "3", "-o", "mine.json"}, folder.path());
+    ASSERT_EQ(described.status, 0) << described.errors;
+    EXPECT_NE(read_text(folder / "mine.json").find("\"leaf_length\": 0.09"), std::string::npos);
+    EXPECT_NE(run_kokage({"grow", "--describe", "mine.json"}, folder.path()).output.find("leaf_length            0.09"),
+              std::string::npos);
+    const auto body = [&](const std::vector<std::string>& words) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 0) << run.errors;
+        return run.output.substr(run.output.find('\n'));
+    };
+    EXPECT_EQ(body({"describe", "mine.json", "--leaves", "300"}),
+              body({"describe", "beech", "--leaves", "300", "--set", "seed=3", "--set", "leaf_length=0.09"}));
+    const ProgramRun grown = run_kokage({"grow", "mine.json", "--leaves", "100"}, folder.path());
+    EXPECT_EQ(grown.status, 0) << grown.errors;
+    EXPECT_EQ(folder.files(), std::vector<std::string>({"mine.glb", "mine.json"}));
+}
+
+TEST(Grow, ASpeciesFileIsNeverOverwrittenByWhatItGivesAndSaysWhatIsWrongInIt) {
+    TemporaryFolder folder;
+    const std::string wrong = R"({"name": "mine", "parameters": {"limb": 3}})";
+    std::ofstream(folder / "wrong.json") << wrong;
+    std::ofstream(folder / "good.json") << R"({"name": "mine"})";
+    for (const auto& words :
+         std::vector<std::vector<std::string>>{{"grow", "wrong.json"},
+                                               {"shade", "wrong.json"},
+                                               {"describe", "wrong.json"},
+                                               {"grow", "none.json"},
+                                               {"grow", "--describe", "none.json"},
+                                               {"grow", "--describe", "good.json", "-o", "good.json"},
+                                               {"grow", "--describe", "good.json", "-o", "good.txt"},
+                                               {"shade", "good.json", "--leaves", "20", "--report", "good.json"}}) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 2) << words.back() << run.errors;
+        EXPECT_TRUE(is_one_complaint(run.errors)) << words.back();
+    }
+    EXPECT_EQ(folder.files(), std::vector<std::string>({"good.json", "wrong.json"}));
+    EXPECT_EQ(read_text(folder / "wrong.json"), wrong);
 }
 
 TEST(Grow, WrongWordsAreRefusedAndNothingIsWritten) {

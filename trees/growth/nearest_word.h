@@ -1,0 +1,12 @@
+#pragma once
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace kokage {
+
+/// The word that takes the fewest insertions, removals and exchanges of letters (Levenshtein's distance) to become
+/// `word`; the first of them where several are as near. `words` must not be empty.
+std::string nearest_word(std::string_view word, const std::vector<std::string>& words);
+
+} // namespace kokage
