@@ -104,7 +104,8 @@ void print_summary(const ShadeOptions& options, const Shading& s, const StageClo
     std::printf("%s: %s, %s%s; %s\n", s.tree.name.c_str(), counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
                 counted(s.patches.patches.size(), "patch", "patches").c_str(),
                 s.tree.was_shaded ? " (shaded before: that light is replaced)" : "", s.environment.description.c_str());
-    std::printf("%s: ", std::string(method_name(options.shading.method)).c_str());
+    const std::string& instead = s.solution.method_instead;
+    std::printf("%s: ", instead.empty() ? std::string(method_name(options.shading.method)).c_str() : instead.c_str());
     if (s.solution.estimated_error)
         std::printf("estimated error %.2g %%%s, ", 100 * *s.solution.estimated_error,
                     asked_text(options.shading).c_str());
@@ -118,6 +119,21 @@ void print_summary(const ShadeOptions& options, const Shading& s, const StageClo
         if (!file.empty())
             std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
                         bytes_text(double(std::filesystem::file_size(file))).c_str());
+}
+
+/// Options about things that this run doesn't make or read.
+std::vector<std::string> idle_option_warnings(const CLI::App& app, const ShadeOptions& options) {
+    std::vector<std::string> warnings;
+    auto warn_if_given = [&](const char* option, const char* why) {
+        if (app.get_option(option)->count() > 0)
+            warnings.push_back(std::string(option) + " changes nothing here: " + why);
+    };
+    if (options.image.empty())
+        for (const char* option : {"--image-size", "--samples", "--exposure"})
+            warn_if_given(option, "no picture is drawn (--image PIC.png draws one)");
+    if (!is_environment_image(options.surroundings))
+        warn_if_given("--strict", "the environment is no image whose pixels could be refused");
+    return warnings;
 }
 
 void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext& context) {
@@ -147,6 +163,8 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     record.options = options.shading;
     record.solution = &shading.solution;
     record.work.stages = clock.stages();
+    for (const std::string& warning : idle_option_warnings(app, options))
+        shading.warnings.push_back(warning);
     record.work.warnings = shading.warnings;
     record.cpu_seconds = watch.cpu();
     record.wall_seconds = watch.wall();

@@ -78,7 +78,9 @@ Json optics_json(const PatchScene& scene) {
 
 Json method_json(const ShadingRecord& record) {
     const ShadingOptions& o = record.options;
-    Json json = {{"name", method_name(o.method)}};
+    const std::string& instead = record.solution->method_instead;
+    Json json = {{"name", instead.empty() ? std::string(method_name(o.method)) : instead},
+                 {"asked_name", method_name(o.method)}};
     json["asked_error"] = o.method == Method::paper ? Json(nullptr) : Json(o.error);
     json["effort"] = o.effort;
     json["maps"] = o.maps;

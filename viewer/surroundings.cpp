@@ -145,6 +145,10 @@ void check_surroundings(const Surroundings& s) {
                          "'; give an image (.hdr, .exr, .png), or sky, constant or gradient");
 }
 
+bool is_environment_image(const Surroundings& surroundings) {
+    return !made_environment(surroundings);
+}
+
 Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report) {
     std::optional<Environment> made = made_environment(s);
     EnvironmentLoading loading;

@@ -26,6 +26,9 @@ void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
 /// Throws InputError, before any work, for values that can't be.
 void check_surroundings(const Surroundings& surroundings);
 
+/// True if the environment is read from an image, false if it is made: sky, constant, gradient.
+bool is_environment_image(const Surroundings& surroundings);
+
 /// Builds or loads it, lights added. Point lights are placed relative to `origin`
 /// (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);

@@ -333,6 +333,7 @@ class PathTracedInstead : public Transport {
             add_light_maps(scene_, tree_, options_, environment, solution, progress);
             solution.report.stages.push_back({"light maps", watch.cpu(), watch.wall()});
         }
+        solution.method_instead = method_name(Method::path_traced);
         solution.report.warnings.push_back(
             "paths were traced instead of bundles: one radiance a leaf side, even in parts, "
             "can't reach the asked error");
@@ -353,6 +354,11 @@ class PathTracedInstead : public Transport {
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress) {
     return std::make_unique<BundlesTransport>(scene, effort, options, false, progress, nullptr, nullptr);
+}
+
+std::unique_ptr<Transport> make_refined_bundles_transport(const PatchScene& scene, const BundleEffort& first,
+                                                          const ShadingOptions& options, Progress& progress) {
+    return std::make_unique<BundlesTransport>(scene, first, options, true, progress, nullptr, nullptr);
 }
 
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree& tree,

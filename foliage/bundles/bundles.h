@@ -13,6 +13,9 @@ namespace kokage {
 /// divided.
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const Tree& tree,
                                                   const ShadingOptions& options, Progress& progress);
+/// Starts with the given effort, and draws more lines until options.error is reached (tests).
+std::unique_ptr<Transport> make_refined_bundles_transport(const PatchScene& scene, const BundleEffort& first,
+                                                          const ShadingOptions& options, Progress& progress);
 /// With the effort given outright (tests).
 std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const BundleEffort& effort,
                                                   const ShadingOptions& options, Progress& progress);

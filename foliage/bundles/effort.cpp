@@ -10,6 +10,8 @@ namespace {
 // Measured: so many directions give the benchmark's 30k crowns of dark and of bright leaves under sky and sun a
 // sampling error of 5.5 %.
 constexpr double kReferenceDirections[2] = {42, 13}, kReferenceError = 0.055;
+// Half of all seeds do worse: with a tenth more lines, few first tries have to be done again.
+constexpr double kMargin = 1.12;
 constexpr double kSkyShare[2] = {9.0 / 20, 3.0 / 20};
 constexpr double kLightSamples[2] = {2.4, 3.2}; // a direction
 constexpr double kDarkAlbedo = 0.3, kBrightAlbedo = 0.9;
@@ -62,7 +64,7 @@ BundleEffort effort_of_directions(int directions, double leaf_albedo, std::uint6
 int directions_for_error(double sampling_error, double leaf_albedo) {
     const double reference = std::lerp(kReferenceDirections[0], kReferenceDirections[1], brightness(leaf_albedo));
     const double ratio = kReferenceError / std::max(sampling_error, 1e-6);
-    return int(std::clamp(std::ceil(reference * ratio * ratio), double(kLeastDirections), double(kMostDirections)));
+    return int(std::clamp(std::ceil(kMargin * reference * ratio * ratio), double(kLeastDirections), double(kMostDirections)));
 }
 
 LightPlan plan_lights(const Environment& environment, const BundleEffort& effort, double negligible) {

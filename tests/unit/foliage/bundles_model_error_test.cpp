@@ -1,6 +1,7 @@
 // The error that no number of lines mends: how it is measured, and what is done about it.
 #include "common/services/error.h"
 #include "foliage/accuracy.h"
+#include "foliage/bundles/bundles.h"
 #include "foliage/bundles/error_by_paths.h"
 #include "foliage/bundles/steps.h"
 #include "foliage/path_traced.h"
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
+#include <functional>
 #include <gtest/gtest.h>
 #include <set>
 
@@ -367,13 +369,12 @@ class StopAt : public Progress {
 };
 
 /// Solves, stopped at one stage after another, each time followed by a whole solve(). Returns the number of stops.
-int expect_stops_change_nothing(const test::SmallTree& small, const Environment& environment,
-                                const ShadingOptions& options) {
-    const Solution whole =
-        make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+int expect_stops_change_nothing(const Environment& environment,
+                                const std::function<std::unique_ptr<Transport>()>& make) {
+    const Solution whole = make()->solve(environment, silent_progress());
     for (int stops = 0;; ++stops) {
         SCOPED_TRACE(stops);
-        const auto transport = make_transport(small.scene, small.tree, options, silent_progress());
+        const auto transport = make();
         StopAt progress(stops + 1);
         try {
             transport->solve(environment, progress);
@@ -391,34 +392,28 @@ int expect_stops_change_nothing(const test::SmallTree& small, const Environment&
 }
 
 TEST(BundlesSteps, ASolveAfterAStoppedOneGivesTheSame) {
+    const test::SmallTree small = leaves_on_a_half_lit_card();
     ShadingOptions options;
     options.error = 0.05; // out of reach of bundles: paths are traced
-    EXPECT_GE(expect_stops_change_nothing(leaves_on_a_half_lit_card(), sun_overhead(), options), 2);
+    EXPECT_GE(expect_stops_change_nothing(
+                  sun_overhead(), [&] { return make_transport(small.scene, small.tree, options, silent_progress()); }),
+              2);
 }
 
 TEST(BundlesSteps, ASolveThatWasStoppedWhileMoreLinesWereDrawnGoesOnWithTheOldOnes) {
-    test::SmallTree small = test::ball_on_a_skeleton(1500, 1, test::bright_leaf());
-    // Every fifth leaf is small, so that the first lines don't do.
-    for (const Patch& patch : small.scene.patches)
-        if (patch.leaf % 5 == 0)
-            for (std::uint32_t t = 0; t < patch.triangle_count; ++t)
-                for (std::size_t c = 0; c < 3; ++c) {
-                    glm::vec3& position = small.scene.positions[small.scene.triangles[patch.first_triangle + t][c]];
-                    const glm::vec3 centre = small.tree.leaves[patch.leaf].centre;
-                    if (glm::distance(position, centre) > 0.02f)
-                        position = centre + 0.01f * glm::normalize(position - centre);
-                }
+    const test::SmallTree small = test::ball_on_a_skeleton(1500, 1, test::bright_leaf());
     ShadingOptions options;
-    options.error = 0.03;
-    const Solution solution = make_transport(small.scene, small.tree, options, silent_progress())
-                                  ->solve(test::sky_and_sun(), silent_progress());
+    options.error = 0.05;
+    const BundleEffort few_lines = effort_of_directions(8, mean_leaf_albedo(small.scene), 1);
+    auto make = [&] { return make_refined_bundles_transport(small.scene, few_lines, options, silent_progress()); };
+    const Solution solution = make()->solve(test::sky_and_sun(), silent_progress());
     auto stages = [&](const char* name) {
         return std::count_if(solution.report.stages.begin(), solution.report.stages.end(),
                              [&](const WorkReport::Stage& stage) { return stage.name == name; });
     };
     EXPECT_GE(stages("line bundles"), 2);
     EXPECT_GE(checks(solution), stages("line bundles") + 1) << "of all lines, and twice of the last";
-    EXPECT_GE(expect_stops_change_nothing(small, test::sky_and_sun(), options), 2);
+    EXPECT_GE(expect_stops_change_nothing(test::sky_and_sun(), make), 2);
 }
 
 } // namespace

@@ -2,6 +2,7 @@
 #include "common/scene/image_file.h"
 #include "tests/support/program_run.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -12,16 +13,22 @@ namespace {
 using Json = nlohmann::json;
 using Words = std::vector<std::string>;
 
-/// A small oak, quickly; further words are added.
-Words small_shade(const Words& more) {
-    Words words = {"shade", "oak", "--leaves", "200", "--image-size", "48x32", "--samples", "1"};
+Words joined(Words words, const Words& more) {
     words.insert(words.end(), more.begin(), more.end());
     return words;
 }
 
+const Words kSmallOak = {"shade", "oak", "--leaves", "200"},
+            kSmallPicture = {"--image-size", "48x32", "--samples", "1"};
+
+/// A small oak, quickly, with a picture; further words are added.
+Words small_shade(const Words& more) {
+    return joined(joined(kSmallOak, kSmallPicture), more);
+}
+
 Json report_of(const TemporaryFolder& folder, const Words& more) {
-    Words words = small_shade(more);
-    words.insert(words.end(), {"--report", "r.json"});
+    const bool draws = std::find(more.begin(), more.end(), "--image") != more.end();
+    const Words words = joined(draws ? small_shade(more) : joined(kSmallOak, more), {"--report", "r.json"});
     const ProgramRun run = run_kokage(words, folder.path());
     EXPECT_EQ(run.status, 0) << run.errors;
     return run.status == 0 ? Json::parse(read_text(folder / "r.json")) : Json();
@@ -81,6 +88,7 @@ TEST(Shade, EveryMethodShades) {
     for (const char* method : {"paper", "light-maps", "bundles", "path-traced"}) {
         const Json r = report_of(folder, {"--method", method});
         EXPECT_EQ(r["method"]["name"], method);
+        EXPECT_EQ(r["method"]["asked_name"], method);
         EXPECT_GT(r["energy"]["in"], 0);
     }
 }
@@ -156,6 +164,23 @@ Json warnings_of(const TemporaryFolder& folder, const Words& more) {
     return report_of(folder, more)["warnings"];
 }
 
+TEST(Shade, SaysWhichOptionsChangeNothing) {
+    TemporaryFolder folder;
+    const Json warnings = warnings_of(folder, {"--samples", "3", "--exposure", "1", "--strict"});
+    ASSERT_EQ(warnings.size(), 3u) << warnings;
+    EXPECT_EQ(warnings[0], "--samples changes nothing here: no picture is drawn (--image PIC.png draws one)");
+    EXPECT_NE(std::string(warnings[1]).find("--exposure changes nothing"), std::string::npos) << warnings;
+    EXPECT_NE(std::string(warnings[2]).find("--strict changes nothing"), std::string::npos) << warnings;
+    EXPECT_TRUE(warnings_of(folder, {"--exposure", "1", "--image", "oak.png"}).empty());
+}
+
+TEST(Shade, SaysThatPathsWereTracedInsteadOfBundles) {
+    TemporaryFolder folder;
+    const Json r = report_of(folder, {"--error", "0.004"});
+    EXPECT_EQ(r["method"]["name"], "path-traced");
+    EXPECT_EQ(r["method"]["asked_name"], "bundles");
+}
+
 TEST(Shade, OddlyShapedEnvironmentsAreWarnedOfOrRefused) {
     TemporaryFolder folder;
     Image sky(16, 8, 3);
@@ -210,7 +235,8 @@ TEST(Shade, DarknessIsWarnedOf) {
 
 TEST(Shade, ASunThatHasSetIsWarnedOf) {
     TemporaryFolder folder;
-    for (const Words& more : {Words{"--sun", "90,-10"}, Words{"--sun", "90,-10", "--light", "point:0,5,0,1"}}) {
+    for (const Words& more : {Words{"--effort", "40", "--sun", "90,-10"},
+                              Words{"--effort", "40", "--sun", "90,-10", "--light", "point:0,5,0,1"}}) {
         const Json warnings = warnings_of(folder, more);
         ASSERT_EQ(warnings.size(), 1u) << warnings;
         EXPECT_NE(std::string(warnings[0]).find("no night sky"), std::string::npos);
