@@ -1,5 +1,6 @@
 #include "trees/growth.h"
 
+#include "common/services/stopwatch.h"
 #include "trees/growth/bark.h"
 #include "trees/growth/crown.h"
 #include "trees/growth/leaves.h"
@@ -21,9 +22,17 @@ constexpr double shoots_per_attractor = 2.2;
 
 } // namespace
 
-Tree grow(const GrowthParameters& parameters, Progress& progress) {
+Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* report) {
     check_parameters(parameters);
-    progress.begin("growing " + parameters.species, 4);
+    Stopwatch watch;
+    auto end_stage = [&](const char* name) {
+        if (report)
+            report->stages.push_back({name, watch.cpu(), watch.wall()});
+        watch.restart();
+        progress.advance(1);
+        progress.throw_if_stopped();
+    };
+    progress.begin("growing " + parameters.species, 3);
     Tree tree;
     tree.name = parameters.species;
     tree.source = "grown: " + parameters.species + ", seed " + std::to_string(parameters.seed);
@@ -34,19 +43,17 @@ Tree grow(const GrowthParameters& parameters, Progress& progress) {
     const float spacing = attractors.spacing_m, step = step_share * spacing;
     std::vector<WoodNode> wood = grow_scaffold(parameters, crown, step);
     colonise(wood, attractors, parameters, step, influence_share * spacing, kill_share * spacing, progress);
-    progress.advance(1);
     GrownSkeleton grown = make_skeleton(std::move(wood), parameters);
-    progress.throw_if_stopped();
-    progress.advance(1);
+    end_stage("skeleton");
     tree.parts.resize(2);
-    tree.materials = {bark_material(parameters), leaf_material(parameters)};
+    tree.materials.push_back(bark_material(parameters));
     tree.bark_patch_count = make_bark(grown.skeleton, parameters, tree.parts[0]);
-    progress.throw_if_stopped();
-    progress.advance(1);
+    end_stage("bark");
+    tree.materials.push_back(leaf_material(parameters));
     tree.parts[1].material = 1;
     make_leaves(grown, parameters, {0, crown.widest_m, 0}, tree.parts[1], tree.leaves);
     tree.skeleton = std::move(grown.skeleton);
-    progress.advance(1);
+    end_stage("leaves");
     return tree;
 }
 

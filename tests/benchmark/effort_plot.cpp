@@ -1,9 +1,7 @@
 #include "tests/benchmark/effort_plot.h"
-#include "common/services/output_file.h"
+#include "tests/benchmark/gnuplot.h"
 
 #include <algorithm>
-#include <cstdio>
-#include <cstdlib>
 #include <map>
 #include <sstream>
 
@@ -27,14 +25,6 @@ std::map<std::string, Curve> curves(const std::vector<FoliageRecord>& records) {
 
 std::string scene_of(const FoliageRecord& record) {
     return std::to_string(record.leaves) + "-" + record.material + "-" + record.scene;
-}
-
-bool run_gnuplot(const std::string& script) {
-    FILE* pipe = popen("gnuplot 2>/dev/null", "w");
-    if (!pipe)
-        return false;
-    std::fwrite(script.data(), 1, script.size(), pipe);
-    return pclose(pipe) == 0;
 }
 
 } // namespace
@@ -67,8 +57,8 @@ std::string plot_script(const std::vector<FoliageRecord>& records, const std::st
 }
 
 std::string plot_efforts(const std::vector<FoliageRecord>& records, const std::filesystem::path& folder) {
-    if (std::system("gnuplot --version >/dev/null 2>&1") != 0)
-        return "plots skipped: the program gnuplot is not installed";
+    if (!has_gnuplot())
+        return kNoGnuplot;
     std::map<std::string, std::vector<FoliageRecord>> scenes;
     for (const FoliageRecord& record : records)
         scenes[scene_of(record)].push_back(record);
@@ -76,10 +66,9 @@ std::string plot_efforts(const std::vector<FoliageRecord>& records, const std::f
     for (const auto& [name, of_scene] : scenes) {
         if (curves(of_scene).empty())
             continue;
-        OutputFile file(folder / ("foliage-" + name + ".svg"));
-        if (!run_gnuplot(plot_script(of_scene, file.temporary_path().string())))
+        if (!draw_plot(folder / ("foliage-" + name + ".svg"),
+                       [&](const std::string& file) { return plot_script(of_scene, file); }))
             return "plots skipped: gnuplot failed on " + name;
-        file.commit();
         ++drawn;
     }
     return std::to_string(drawn) + " plots in " + folder.string();
