@@ -1,20 +1,13 @@
 #include "trees/growth/crown.h"
 
 #include "common/services/random.h"
-#include "trees/growth/leaves.h"
+#include "trees/growth/leaf_shape.h"
 #include "trees/growth/streams.h"
 
 #include <algorithm>
 #include <cmath>
 
 namespace kokage {
-
-double mean_leaf_area(const GrowthParameters& p) {
-    const double spread =
-        p.leaf_length_spread; // lengths are uniform in mean (1 +- spread): mean square = 1 + spread^2/3
-    const double shape = p.leaf_form == LeafForm::alpha ? leaf_mask_area() : leaf_shape_area(p.leaf_detail);
-    return shape * p.leaf_width * p.leaf_length * p.leaf_length * (1 + spread * spread / 3);
-}
 
 Crown::Crown(const GrowthParameters& p)
     : lobe_depth_(float(p.crown_lobe_depth)), roundness_(float(p.crown_roundness)), shell_(float(p.crown_shell)),

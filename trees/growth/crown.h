@@ -47,7 +47,4 @@ class Crown {
     std::uint64_t seed_;
 };
 
-/// Mean area of a leaf blade in m^2 for these parameters.
-double mean_leaf_area(const GrowthParameters& parameters);
-
 } // namespace kokage

@@ -39,6 +39,8 @@ ParameterRow choice(const char* name, Choice GrowthParameters::*member, std::vec
 std::vector<ParameterRow> wood_rows();
 /// Shoots, leaves and what they look like (parameters_of_leaves.cpp).
 std::vector<ParameterRow> leaf_rows();
+/// Whose leaves and bark they are, and the season (parameters_of_looks.cpp).
+std::vector<ParameterRow> look_rows();
 
 /// All of them, in reading order.
 const std::vector<ParameterRow>& parameter_table();

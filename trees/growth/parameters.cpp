@@ -67,8 +67,9 @@ ParameterRow whole(const char* name, int GrowthParameters::*member, const char* 
 
 const std::vector<ParameterRow>& parameter_table() {
     static const std::vector<ParameterRow> table = [] {
-        std::vector<ParameterRow> rows = wood_rows(), leaves = leaf_rows();
-        rows.insert(rows.end(), leaves.begin(), leaves.end());
+        std::vector<ParameterRow> rows = wood_rows();
+        for (const std::vector<ParameterRow>& more : {leaf_rows(), look_rows()})
+            rows.insert(rows.end(), more.begin(), more.end());
         return rows;
     }();
     return table;

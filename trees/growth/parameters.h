@@ -1,5 +1,8 @@
 #pragma once
 // What a tree grows from: a species is a set of these values.
+#include "trees/growth/bark_kind.h"
+#include "trees/growth/leaf_outline.h"
+
 #include <cstdint>
 #include <string>
 #include <string_view>
@@ -11,6 +14,17 @@ enum class LeafForm {
     outline, ///< a flat polygon with the leaf's outline
     alpha    ///< a rectangular card with the outline in its alpha texture
 };
+
+/// How leaves stand along a shoot (phyllotaxis).
+enum class LeafArrangement {
+    spiral,    ///< one by one, 144 degrees on from the last (2/5)
+    opposite,  ///< in pairs, each pair at right angles to the last
+    whorled,   ///< five around the shoot, each whorl turned by half a step
+    distichous ///< one by one, left and right, in a level plane
+};
+
+/// What the leaves look like, and whether there are any.
+enum class Season { spring, summer, autumn, winter, blossom };
 
 /// Lengths in metres, angles in degrees. Ranges, units and meanings: parameter_descriptions().
 struct GrowthParameters {
@@ -38,6 +52,14 @@ struct GrowthParameters {
     LeafForm leaf_form = LeafForm::outline;
     int leaf_detail = 1;
     int textures = 1;
+
+    // What leaves and bark are like, and when: rows in parameters_of_looks.cpp.
+    LeafKind leaf_shape = LeafKind::oak, leaf_color = LeafKind::oak;
+    LeafArrangement leaf_arrangement = LeafArrangement::spiral;
+    double leaf_angle = 59, leaf_crowding = 1, leaf_hang = 0, leaf_bend = 0, petiole_length = 0;
+    int needles = 60;
+    BarkKind bark = BarkKind::oak;
+    Season season = Season::summer;
 };
 
 struct ParameterDescription {

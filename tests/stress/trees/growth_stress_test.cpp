@@ -38,7 +38,7 @@ TEST(GrowthStress, EveryParameterAtItsEndsGrowsASoundTree) {
                                   high ? description.choices.back() : description.choices.front());
                 }
                 const Tree tree = grow(parameters);
-                EXPECT_EQ(tree.leaves.size(), std::size_t(leaves));
+                EXPECT_EQ(tree.leaves.size(), std::size_t(leaves)); // the ends of `season` bear leaves or flowers
                 EXPECT_TRUE(is_sound(tree)) << description.name << " = " << value << ", " << leaves << " leaves";
                 EXPECT_NO_THROW(validate(make_patches(tree)));
             }

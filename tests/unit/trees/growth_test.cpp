@@ -2,7 +2,7 @@
 #include "common/services/parallel.h"
 #include "tests/unit/trees/growth_shape.h"
 #include "trees/growth.h"
-#include "trees/growth/crown.h"
+#include "trees/growth/leaf_shape.h"
 #include "trees/patches.h"
 
 #include <cstring>
