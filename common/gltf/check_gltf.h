@@ -1,6 +1,7 @@
 #pragma once
 // What is checked in a glTF file before it is decoded. Private to common/gltf. All functions throw InputError with one
 // line that begins with `path`.
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
@@ -18,14 +19,25 @@ bool is_glb(std::span<const unsigned char> bytes);
 /// recursive readers.
 nlohmann::json parse_gltf_json(std::span<const unsigned char> bytes, const std::string& path);
 
-/// Refuses a required extension that is not understood, and geometry that exists in a compressed form alone, by the
-/// extension's name.
+/// The most elements of an accessor, and the most vertices and the most corners of triangles of a scene.
+inline constexpr std::size_t kMaximumElements = std::size_t(1) << 27;
+
+/// The most places of meshes in a scene, instances counted singly; and of meshes that come out of it.
+inline constexpr std::size_t kMaximumInstances = std::size_t(1) << 22;
+inline constexpr std::size_t kMaximumMeshes = std::size_t(1) << 20;
+
+/// Refuses a required extension that is not understood, by its name.
 void check_required_extensions(const nlohmann::json& json, const std::string& path);
 
-/// Refuses buffer views that reach beyond their buffer, buffers without data, and images without a place.
-void check_gltf_ranges(const nlohmann::json& json, bool binary, const std::string& path);
+/// Refuses buffers without a length, buffer views that reach beyond their buffer, and images without a place.
+/// What it lets pass are arrays of objects with numbers of the right kind.
+void check_gltf_ranges(const nlohmann::json& json, const std::string& path);
 
-/// Refuses accessors that reach beyond their buffer view, and counts beyond 2^27 elements.
+/// Refuses accessors that reach beyond their buffer view, and counts beyond kMaximumElements.
 void check_gltf_accessors(const tinygltf::Model& model, const std::string& path);
+
+/// A member that is an unsigned integer; `missing` if it is not there. Refuses what is of another kind.
+std::uint64_t unsigned_member(const nlohmann::json& object, const char* name, std::uint64_t missing,
+                              const std::string& path, const std::string& place);
 
 } // namespace kokage

@@ -1,14 +1,16 @@
 #include "common/gltf/gltf_document.h"
 
 #include "common/gltf/check_gltf.h"
+#include "common/gltf/gltf_draco.h"
+#include "common/gltf/gltf_meshopt.h"
+#include "common/gltf/gltf_resources.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cmath>
 #include <cstring>
-#include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
@@ -18,6 +20,8 @@ struct GltfDocument::Implementation {
     std::string path;
     nlohmann::json json;
     tinygltf::Model model;
+    std::size_t stored_bytes = 0;                               ///< of all buffers as the file holds them
+    mutable std::map<int, std::vector<unsigned char>> images{}; ///< that lie in no buffer, read when they are asked for
 };
 
 GltfDocument::GltfDocument(std::unique_ptr<Implementation> implementation)
@@ -47,34 +51,6 @@ const nlohmann::json& GltfDocument::extras() const {
 
 namespace {
 
-std::vector<unsigned char> read_bytes(const std::filesystem::path& path) {
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        throw InputError(path.string() +
-                         (std::filesystem::exists(path, error) ? ": not a regular file" : ": no such file"));
-    std::ifstream file(path, std::ios::binary | std::ios::ate);
-    if (!file)
-        throw InputError(path.string() + ": cannot be opened for reading");
-    const std::streamoff size = file.tellg();
-    if (size > std::streamoff(0xffffffffu))
-        throw InputError(path.string() + ": larger than 4 GB, which glTF does not allow");
-    std::vector<unsigned char> bytes(std::size_t(std::max<std::streamoff>(size, 0)));
-    file.seekg(0);
-    if (!file.read(reinterpret_cast<char*>(bytes.data()), size))
-        throw InputError(path.string() + ": could not be read to its end");
-    return bytes;
-}
-
-/// tinygltf may not decode images (stb_image is not part of Debian's build): it hands over the encoded bytes, which are
-/// kept.
-bool keep_encoded_image(tinygltf::Image* image, const int, std::string*, std::string*, int, int,
-                        const unsigned char* bytes, int size, void*) {
-    if (size > 0)
-        image->image.assign(bytes, bytes + size);
-    image->as_is = true;
-    return true;
-}
-
 std::string first_line(std::string text) {
     text.erase(std::find(text.begin(), text.end(), '\n'), text.end());
     return text.empty() ? "not a valid glTF file" : text;
@@ -82,36 +58,96 @@ std::string first_line(std::string text) {
 
 } // namespace
 
-GltfDocument GltfDocument::read(const std::filesystem::path& path, Progress& progress) {
-    auto document = std::make_unique<Implementation>();
-    document->path = path.string();
-    const std::vector<unsigned char> bytes = read_bytes(path);
-    progress.throw_if_stopped();
-    const bool binary = is_glb(bytes);
-    document->json = parse_gltf_json(bytes, document->path);
-    check_required_extensions(document->json, document->path);
-    check_gltf_ranges(document->json, binary, document->path);
-    progress.throw_if_stopped();
+namespace {
 
+/// What tinygltf is given: the file's structure alone. Bytes are our own business (read_gltf_buffers), and it refuses
+/// indices that lie in no buffer view, as those of Draco: they get one for the while.
+nlohmann::json structure_for_tinygltf(const nlohmann::json& json, std::vector<std::size_t>& without_view) {
+    nlohmann::json structure;
+    for (const char* name : {"asset", "scene", "scenes", "nodes", "meshes", "accessors", "materials", "textures",
+                             "samplers", "skins", "extensionsUsed", "extensionsRequired"})
+        if (const auto found = json.find(name); found != json.end())
+            structure[name] = *found;
+    const auto views = json.find("bufferViews");
+    const std::size_t count = views == json.end() ? 0 : views->size();
+    const nlohmann::json stand_in = {{"buffer", 0}, {"byteLength", 1}};
+    structure["bufferViews"] = nlohmann::json::array();
+    for (std::size_t i = 0; i <= count; ++i)
+        structure["bufferViews"].push_back(stand_in);
+    if (const auto accessors = structure.find("accessors"); accessors != structure.end() && accessors->is_array())
+        for (std::size_t i = 0; i < accessors->size(); ++i)
+            if (nlohmann::json& accessor = (*accessors)[i]; accessor.is_object() && !accessor.contains("bufferView")) {
+                accessor["bufferView"] = count;
+                without_view.push_back(i);
+            }
+    return structure;
+}
+
+tinygltf::Model parse_structure(const nlohmann::json& json, const std::string& path) {
     tinygltf::TinyGLTF loader;
-    loader.SetImageLoader(keep_encoded_image, nullptr);
+    tinygltf::Model model;
+    std::vector<std::size_t> without_view;
     std::string error, warning;
-    const std::string folder = path.has_parent_path() ? path.parent_path().string() : std::string(".");
     bool loaded = false;
     try {
-        loaded = binary ? loader.LoadBinaryFromMemory(&document->model, &error, &warning, bytes.data(),
-                                                      static_cast<unsigned>(bytes.size()), folder)
-                        : loader.LoadASCIIFromString(&document->model, &error, &warning,
-                                                     reinterpret_cast<const char*>(bytes.data()),
-                                                     static_cast<unsigned>(bytes.size()), folder);
+        const std::string text = structure_for_tinygltf(json, without_view).dump();
+        loaded =
+            loader.LoadASCIIFromString(&model, &error, &warning, text.data(), static_cast<unsigned>(text.size()), ".");
     } catch (const std::exception& failure) {
         error = failure.what();
     }
     if (!loaded)
-        throw InputError(document->path + ": " + first_line(error));
-    GltfDocument result(std::move(document));
-    check_gltf_accessors(result.model(), result.path());
-    return result;
+        throw InputError(path + ": " + first_line(error));
+    for (const std::size_t accessor : without_view)
+        model.accessors[accessor].bufferView = -1;
+    return model;
+}
+
+/// Buffers and buffer views as the file has them; check_gltf_ranges() has seen them. tinygltf would refuse strides that
+/// are no multiple of 4, which some exporters write.
+void add_buffers(const nlohmann::json& json, std::vector<std::vector<unsigned char>> buffers, tinygltf::Model& model,
+                 const std::string& path) {
+    model.buffers.resize(buffers.size());
+    for (std::size_t i = 0; i < buffers.size(); ++i)
+        model.buffers[i].data = std::move(buffers[i]);
+    model.bufferViews.clear();
+    const auto views = json.find("bufferViews");
+    if (views == json.end())
+        return;
+    for (const nlohmann::json& source : *views) {
+        const std::string place = "bufferView " + std::to_string(model.bufferViews.size());
+        tinygltf::BufferView& view = model.bufferViews.emplace_back();
+        view.buffer = int(unsigned_member(source, "buffer", 0, path, place));
+        view.byteOffset = unsigned_member(source, "byteOffset", 0, path, place);
+        view.byteLength = unsigned_member(source, "byteLength", 0, path, place);
+        view.byteStride = std::min<std::uint64_t>(unsigned_member(source, "byteStride", 0, path, place), 1u << 20);
+    }
+}
+
+} // namespace
+
+GltfDocument GltfDocument::read(const std::filesystem::path& path, Progress& progress) {
+    auto document = std::make_unique<Implementation>();
+    document->path = path.string();
+    std::vector<unsigned char> bytes = read_file_bytes(path, 0xffffffffu);
+    progress.throw_if_stopped();
+    const bool binary = is_glb(bytes);
+    document->json = parse_gltf_json(bytes, document->path);
+    const nlohmann::json& json = document->json;
+    check_required_extensions(json, document->path);
+    check_gltf_ranges(json, document->path);
+    progress.throw_if_stopped();
+
+    tinygltf::Model& model = document->model;
+    model = parse_structure(json, document->path);
+    add_buffers(json, read_gltf_buffers(json, std::move(bytes), binary, path), model, document->path);
+    for (const tinygltf::Buffer& buffer : model.buffers)
+        document->stored_bytes += buffer.data.size();
+    progress.throw_if_stopped();
+    decode_meshopt_views(json, model, document->path);
+    check_gltf_accessors(model, document->path);
+    decode_draco_primitives(json, model, document->path, progress);
+    return GltfDocument(std::move(document));
 }
 
 namespace {
@@ -203,12 +239,20 @@ std::size_t GltfDocument::accessor_count(int accessor) const {
     return accessor_at(*this, accessor).count;
 }
 
+void GltfDocument::check_data(int index) const {
+    const tinygltf::Accessor& accessor = accessor_at(*this, index);
+    if (accessor.bufferView < 0 && accessor.count > implementation_->stored_bytes)
+        fail("accessor " + std::to_string(index) + ": " + std::to_string(accessor.count) +
+             " elements, but no data for them");
+}
+
 std::vector<float> GltfDocument::floats(int index, int components) const {
     const tinygltf::Accessor& accessor = accessor_at(*this, index);
     const int found = tinygltf::GetNumComponentsInType(std::uint32_t(accessor.type));
     if (found != components)
         fail("accessor " + std::to_string(index) + " has " + std::to_string(found) + " components an element where " +
              std::to_string(components) + " are needed");
+    check_data(index);
     const std::size_t size = std::size_t(tinygltf::GetComponentSizeInBytes(std::uint32_t(accessor.componentType)));
     std::vector<float> values(accessor.count * std::size_t(components), 0.f);
     for_each_element(model(), accessor, [&](std::size_t element, const unsigned char* bytes) {
@@ -225,6 +269,7 @@ std::vector<std::uint32_t> GltfDocument::unsigned_integers(int index) const {
                                                   accessor.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_SHORT &&
                                                   accessor.componentType != TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT))
         fail("accessor " + std::to_string(index) + " does not hold unsigned integers");
+    check_data(index);
     std::vector<std::uint32_t> values(accessor.count, 0u);
     for_each_element(model(), accessor, [&](std::size_t element, const unsigned char* bytes) {
         values[element] = component_as_unsigned(bytes, accessor.componentType);
@@ -232,15 +277,38 @@ std::vector<std::uint32_t> GltfDocument::unsigned_integers(int index) const {
     return values;
 }
 
+std::size_t GltfDocument::image_count() const {
+    const auto images = json().find("images");
+    return images == json().end() ? 0 : images->size();
+}
+
 std::span<const unsigned char> GltfDocument::image_bytes(int index) const {
-    const auto& images = model().images;
-    if (index < 0 || std::size_t(index) >= images.size())
-        fail("image " + std::to_string(index) + " does not exist; the file has " + std::to_string(images.size()));
-    const tinygltf::Image& image = images[std::size_t(index)];
-    if (image.image.empty())
-        fail("image " + std::to_string(index) +
-             (image.uri.empty() ? " is empty" : " (" + image.uri + ") could not be read: put it beside the file"));
-    return image.image;
+    if (index < 0 || std::size_t(index) >= image_count())
+        fail("image " + std::to_string(index) + " does not exist; the file has " + std::to_string(image_count()));
+    const nlohmann::json& image = json()["images"][std::size_t(index)];
+    const std::string place = "image " + std::to_string(index);
+    if (const auto view_index = image.find("bufferView"); view_index != image.end()) {
+        const tinygltf::BufferView& view = model().bufferViews[view_index->get<std::size_t>()];
+        const std::vector<unsigned char>& data = model().buffers[std::size_t(view.buffer)].data;
+        if (view.byteOffset > data.size() || view.byteLength > data.size() - view.byteOffset)
+            fail(place + " is not within its buffer");
+        return std::span(data).subspan(view.byteOffset, view.byteLength);
+    }
+    const auto uri = image.find("uri");
+    if (uri == image.end())
+        fail(place + " has neither \"uri\" nor \"bufferView\"");
+    auto [found, is_new] = implementation_->images.try_emplace(index);
+    if (is_new) {
+        const std::string& name = uri->get_ref<const std::string&>();
+        if (is_data_uri(name)) {
+            found->second = data_uri_bytes(name, path(), place);
+        } else {
+            const std::filesystem::path file = path();
+            found->second = read_file_bytes(
+                find_named_file(file.parent_path(), name, NameReach::relative, path() + ": " + place), 0xffffffffu);
+        }
+    }
+    return found->second;
 }
 
 } // namespace kokage

@@ -5,80 +5,127 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string_view>
 #include <tiny_gltf.h>
 
 namespace kokage {
 namespace {
 
-struct DecodedImage {
-    std::shared_ptr<const Image> color, alpha;
-};
+/// Of all colour textures of a file together, and of one.
+constexpr std::uint64_t kMaximumPixels = std::uint64_t(1) << 27;
+constexpr std::uint64_t kMaximumPixelsOfOne = std::uint64_t(1) << 26;
 
-/// Splits RGB and alpha; alpha that is 1 everywhere is no alpha.
-DecodedImage split_alpha(const Image& image) {
-    const std::size_t count = std::size_t(image.width) * std::size_t(image.height);
-    const std::size_t channels = std::size_t(image.channels);
-    auto color = std::make_shared<Image>(image.width, image.height, 3);
-    const bool grey = channels <= 2, has_alpha = channels == 2 || channels == 4;
-    std::shared_ptr<Image> alpha = has_alpha ? std::make_shared<Image>(image.width, image.height, 1) : nullptr;
-    bool opaque = true;
-    for (std::size_t i = 0; i < count; ++i) {
-        const float* from = image.pixels.data() + i * channels;
-        for (std::size_t c = 0; c < 3; ++c)
-            color->pixels[i * 3 + c] = from[grey ? 0 : c];
-        if (alpha) {
-            alpha->pixels[i] = from[channels - 1];
-            opaque = opaque && from[channels - 1] >= 1.f;
-        }
-    }
-    return {color, opaque ? nullptr : alpha};
-}
+/// A texture's image in a format that nothing here decodes.
+struct LostImage {
+    std::string what; ///< "in KTX2 (BasisU), which can't be decoded"
+};
 
 class MaterialReader {
   public:
-    explicit MaterialReader(const GltfDocument& document)
-        : document_(document), images_(document.model().images.size()) {}
+    MaterialReader(const GltfDocument& document, std::vector<std::string>& notes)
+        : document_(document), notes_(notes), images_(document.image_count()) {}
 
-    GltfMaterial read(const tinygltf::Material& source, std::size_t index) {
-        GltfMaterial material;
+    SceneMaterial read(const tinygltf::Material& source, std::size_t index) {
+        SceneMaterial material;
         material.name = source.name;
         const std::string place =
             "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + source.name + "'");
         const auto& pbr = source.pbrMetallicRoughness;
+        material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
+                              : source.alphaMode == "BLEND" ? AlphaMode::blend
+                                                            : AlphaMode::opaque;
+        material.alpha_cutoff = glm::clamp(float(source.alphaCutoff), 0.f, 2.f);
+        material.double_sided = source.doubleSided;
+        material.unlit = extension(source, "KHR_materials_unlit") != nullptr;
+        material.roughness = glm::clamp(float(pbr.roughnessFactor), 0.f, 1.f);
         const tinygltf::Value* diffuse = extension(source, "KHR_materials_pbrSpecularGlossiness");
         if (diffuse) {
             material.base_color = color4(diffuse->Get("diffuseFactor"), glm::vec4(1.f));
             if (diffuse->Has("diffuseTexture"))
-                material.base_color_texture = texture_from(diffuse->Get("diffuseTexture"), place);
+                read_color_texture(material, texture_info(diffuse->Get("diffuseTexture")), place);
         } else {
             for (std::size_t c = 0; c < 4 && c < pbr.baseColorFactor.size(); ++c)
                 material.base_color[c] = float(pbr.baseColorFactor[c]);
             if (pbr.baseColorTexture.index >= 0)
-                material.base_color_texture = texture(pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord,
-                                                      pbr.baseColorTexture.extensions, place);
+                read_color_texture(
+                    material,
+                    {pbr.baseColorTexture.index, pbr.baseColorTexture.texCoord, pbr.baseColorTexture.extensions},
+                    place);
         }
         for (std::size_t c = 0; c < 4; ++c)
             if (!std::isfinite(material.base_color[c]))
                 document_.fail(place + ": its base colour is not finite");
         material.base_color = glm::clamp(material.base_color, 0.f, 1.f);
-        material.alpha_mode = source.alphaMode == "MASK"    ? GltfAlphaMode::mask
-                              : source.alphaMode == "BLEND" ? GltfAlphaMode::blend
-                                                            : GltfAlphaMode::opaque;
-        material.alpha_cutoff = float(source.alphaCutoff);
-        material.double_sided = source.doubleSided;
-        material.unlit = extension(source, "KHR_materials_unlit") != nullptr;
-        material.roughness = float(pbr.roughnessFactor);
-        if (const tinygltf::Value* diffuse_transmission = extension(source, "KHR_materials_diffuse_transmission")) {
-            material.diffuse_transmission = number(diffuse_transmission->Get("diffuseTransmissionFactor"), 0.f);
-            material.diffuse_transmission_color =
-                glm::vec3(color4(diffuse_transmission->Get("diffuseTransmissionColorFactor"), glm::vec4(1.f)));
-        }
+        if (const tinygltf::Value* transmitted = extension(source, "KHR_materials_diffuse_transmission"))
+            read_diffuse_transmission(material, *transmitted, place);
         if (const tinygltf::Value* transmission = extension(source, "KHR_materials_transmission"))
-            material.transmission = number(transmission->Get("transmissionFactor"), 0.f);
+            material.transmission = glm::clamp(number(transmission->Get("transmissionFactor"), 0.f), 0.f, 1.f);
         return material;
     }
 
   private:
+    struct TextureInfo {
+        int index = -1, texture_coordinates = 0;
+        tinygltf::ExtensionMap extensions;
+    };
+
+    void read_color_texture(SceneMaterial& material, const TextureInfo& info, const std::string& place) {
+        try {
+            material.base_color_texture = texture(info, place);
+        } catch (const LostImage& lost) {
+            if (material.alpha_mode != AlphaMode::opaque)
+                document_.fail(place + ": its alpha mask is " + lost.what +
+                               ", and without it every leaf would be a solid card; export its textures as PNG, JPEG or "
+                               "WebP");
+            material.color_is_lost = true;
+            notes_.push_back(place + ": its colour texture is " + lost.what +
+                             ": a plain colour stands in for it; export its textures as PNG, JPEG or WebP");
+        }
+    }
+
+    /// Factors times the means of their textures: a leaf has one transmittance here.
+    void read_diffuse_transmission(SceneMaterial& material, const tinygltf::Value& source, const std::string& place) {
+        float factor = number(source.Get("diffuseTransmissionFactor"), 0.f);
+        glm::vec3 color(color4(source.Get("diffuseTransmissionColorFactor"), glm::vec4(1.f)));
+        const Image* mask = material.base_color_texture && material.base_color_texture->alpha
+                                ? material.base_color_texture->alpha.get()
+                                : nullptr;
+        for (const char* name : {"diffuseTransmissionTexture", "diffuseTransmissionColorTexture"}) {
+            if (!source.Has(name))
+                continue;
+            try {
+                const SceneTexture read = texture(texture_info(source.Get(name)), place);
+                if (name == std::string_view("diffuseTransmissionTexture"))
+                    factor *= read.alpha ? mean(*read.alpha, mask, material.alpha_cutoff).r : 1.f;
+                else
+                    color *= mean(*read.color, mask, material.alpha_cutoff);
+                notes_.push_back(place + ": its " + name + " is taken as its mean");
+            } catch (const LostImage& lost) {
+                notes_.push_back(place + ": its " + name + " is " + lost.what + ": its factor alone was read");
+            }
+        }
+        if (!std::isfinite(factor) || !std::isfinite(color.r + color.g + color.b))
+            document_.fail(place + ": its diffuse transmission is not finite");
+        material.diffuse_transmission = glm::clamp(factor, 0.f, 1.f);
+        material.diffuse_transmission_color = glm::clamp(color, 0.f, 1.f);
+    }
+
+    /// The mean of an image, where the mask is solid if there is one of the same size.
+    static glm::vec3 mean(const Image& image, const Image* mask, float cutoff) {
+        const bool masked = mask && mask->width == image.width && mask->height == image.height;
+        const auto channels = std::size_t(image.channels);
+        glm::dvec3 sum(0.0);
+        double count = 0;
+        for (std::size_t i = 0; i < image.pixels.size() / channels; ++i) {
+            if (masked && mask->pixels[i] < cutoff)
+                continue;
+            for (std::size_t c = 0; c < 3; ++c)
+                sum[c] += double(image.pixels[i * channels + std::min(c, channels - 1)]);
+            count += 1;
+        }
+        return count > 0 ? glm::vec3(sum / count) : glm::vec3(0.f);
+    }
+
     const tinygltf::Value* extension(const tinygltf::Material& source, const std::string& name) const {
         const auto found = source.extensions.find(name);
         return found == source.extensions.end() ? nullptr : &found->second;
@@ -95,39 +142,51 @@ class MaterialReader {
         return missing;
     }
 
-    GltfTexture texture_from(const tinygltf::Value& info, const std::string& place) {
-        tinygltf::ExtensionMap extensions;
+    static TextureInfo texture_info(const tinygltf::Value& info) {
+        TextureInfo result{int(number(info.Get("index"), -1.f)), int(number(info.Get("texCoord"), 0.f)), {}};
         if (info.Has("extensions") && info.Get("extensions").IsObject())
-            extensions = info.Get("extensions").Get<tinygltf::Value::Object>();
-        return texture(int(number(info.Get("index"), -1.f)), int(number(info.Get("texCoord"), 0.f)), extensions, place);
+            result.extensions = info.Get("extensions").Get<tinygltf::Value::Object>();
+        return result;
     }
 
-    GltfTexture texture(int index, int texture_coordinates, const tinygltf::ExtensionMap& extensions,
-                        const std::string& place) {
+    /// Throws LostImage.
+    SceneTexture texture(const TextureInfo& info, const std::string& place) {
         const tinygltf::Model& model = document_.model();
-        if (index < 0 || std::size_t(index) >= model.textures.size())
-            document_.fail(place + ": texture " + std::to_string(index) + " does not exist");
-        const tinygltf::Texture& source = model.textures[std::size_t(index)];
-        GltfTexture result;
-        result.texture_coordinates = texture_coordinates;
-        int image = source.source;
-        if (const auto webp = source.extensions.find("EXT_texture_webp"); webp != source.extensions.end())
-            image = int(number(webp->second.Get("source"), float(image)));
-        const DecodedImage& decoded = decode(image, place);
-        result.color = decoded.color;
-        result.alpha = decoded.alpha;
+        if (info.index < 0 || std::size_t(info.index) >= model.textures.size())
+            document_.fail(place + ": texture " + std::to_string(info.index) + " does not exist");
+        const tinygltf::Texture& source = model.textures[std::size_t(info.index)];
+        SceneTexture result = decode(image_of(source), place);
+        result.texture_coordinates = info.texture_coordinates;
         if (source.sampler >= 0 && std::size_t(source.sampler) < model.samplers.size()) {
             result.wrap_u = wrap(model.samplers[std::size_t(source.sampler)].wrapS);
             result.wrap_v = wrap(model.samplers[std::size_t(source.sampler)].wrapT);
         }
-        if (const auto transform = extensions.find("KHR_texture_transform"); transform != extensions.end()) {
+        if (const auto transform = info.extensions.find("KHR_texture_transform"); transform != info.extensions.end()) {
             const tinygltf::Value& value = transform->second;
             result.offset = glm::vec2(color4(value.Get("offset"), glm::vec4(0.f)));
             result.scale = glm::vec2(color4(value.Get("scale"), glm::vec4(1.f)));
             result.rotation = number(value.Get("rotation"), 0.f);
-            result.texture_coordinates = int(number(value.Get("texCoord"), float(texture_coordinates)));
+            result.texture_coordinates = int(number(value.Get("texCoord"), float(info.texture_coordinates)));
+            if (!std::isfinite(result.offset.x + result.offset.y + result.scale.x + result.scale.y + result.rotation))
+                document_.fail(place + ": its texture's transform is not finite");
         }
         return result;
+    }
+
+    /// WebP before the fallback that files give beside it; formats that can't be decoded only where there is no other.
+    static int image_of(const tinygltf::Texture& source) {
+        const auto named = [&](const char* name) {
+            const auto found = source.extensions.find(name);
+            return found == source.extensions.end() ? -1 : int(number(found->second.Get("source"), -1.f));
+        };
+        if (const int webp = named("EXT_texture_webp"); webp >= 0)
+            return webp;
+        if (source.source >= 0)
+            return source.source;
+        for (const char* name : {"KHR_texture_basisu", "MSFT_texture_dds", "EXT_texture_avif"})
+            if (const int image = named(name); image >= 0)
+                return image;
+        return -1;
     }
 
     static TextureWrap wrap(int mode) {
@@ -136,27 +195,37 @@ class MaterialReader {
                                                                : TextureWrap::repeat;
     }
 
-    const DecodedImage& decode(int index, const std::string& place) {
+    const SceneTexture& decode(int index, const std::string& place) {
+        if (index < 0)
+            throw LostImage{"in a format of an unknown extension"};
         const std::span<const unsigned char> bytes = document_.image_bytes(index); // throws if there is no such image
-        DecodedImage& decoded = images_[std::size_t(index)];
-        if (!decoded.color) {
-            ImageLoading loading;
-            loading.max_pixels = std::uint64_t(1) << 27;
-            decoded = split_alpha(load_image(
-                std::as_bytes(bytes), document_.path() + ", image " + std::to_string(index) + " of " + place, loading));
-        }
-        return decoded;
+        SceneTexture& decoded = images_[std::size_t(index)];
+        if (decoded.color)
+            return decoded;
+        const std::string format = image_format(std::as_bytes(bytes));
+        if (format == "ktx2" || format == "avif")
+            throw LostImage{"in " + (format == "ktx2" ? std::string("KTX2 (BasisU)") : std::string("AVIF")) +
+                            ", which can't be decoded"};
+        ImageLoading loading;
+        loading.max_pixels = std::min(kMaximumPixelsOfOne, kMaximumPixels - pixels_);
+        const Image image = load_image(std::as_bytes(bytes),
+                                       document_.path() + ", image " + std::to_string(index) + " of " + place, loading);
+        pixels_ += std::uint64_t(image.width) * std::uint64_t(image.height);
+        return decoded = split_alpha(image);
     }
 
     const GltfDocument& document_;
-    std::vector<DecodedImage> images_;
+    std::vector<std::string>& notes_;
+    std::vector<SceneTexture> images_;
+    std::uint64_t pixels_ = 0;
 };
 
 } // namespace
 
-std::vector<GltfMaterial> read_gltf_materials(const GltfDocument& document, Progress& progress) {
-    std::vector<GltfMaterial> materials;
-    MaterialReader reader(document);
+std::vector<SceneMaterial> read_gltf_materials(const GltfDocument& document, std::vector<std::string>& notes,
+                                               Progress& progress) {
+    std::vector<SceneMaterial> materials;
+    MaterialReader reader(document, notes);
     for (const tinygltf::Material& source : document.model().materials) {
         progress.throw_if_stopped();
         materials.push_back(reader.read(source, materials.size()));

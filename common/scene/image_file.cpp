@@ -199,8 +199,9 @@ Input open(const std::filesystem::path& path) {
     return input;
 }
 
-/// The format of a file's bytes, as an extension that OpenImageIO knows; empty if unknown.
-std::string format_of(std::span<const std::byte> bytes) {
+} // namespace
+
+std::string image_format(std::span<const std::byte> bytes) {
     auto starts = [&](std::string_view magic, std::size_t at = 0) {
         return bytes.size() >= at + magic.size() && std::memcmp(bytes.data() + at, magic.data(), magic.size()) == 0;
     };
@@ -220,21 +221,26 @@ std::string format_of(std::span<const std::byte> bytes) {
         return "bmp";
     if (starts("GIF8"))
         return "gif";
+    if (starts("DDS "))
+        return "dds";
+    if (starts("\xabKTX 20\xbb"))
+        return "ktx2";
+    if (starts("ftypavif", 4) || starts("ftypavis", 4))
+        return "avif";
     return "";
 }
-
-} // namespace
 
 Image load_image(const std::filesystem::path& path, const ImageLoading& loading) {
     return read(open(path), path.string(), loading);
 }
 
 Image load_image(std::span<const std::byte> bytes, const std::string& name, const ImageLoading& loading) {
-    if (bytes.size() >= 12 && std::memcmp(bytes.data(), "\xabKTX 20\xbb", 8) == 0)
-        fail_to_read(name, "it is a KTX2 texture, which can't be decoded; convert it to PNG or JPEG");
-    const std::string format = format_of(bytes);
+    const std::string format = image_format(bytes);
+    if (format == "ktx2" || format == "avif")
+        fail_to_read(name, "it is a " + std::string(format == "ktx2" ? "KTX2 texture" : "AVIF image") +
+                               ", which can't be decoded; convert it to PNG or JPEG");
     if (format.empty())
-        fail_to_read(name, "its first bytes are of no known format (PNG, JPEG, WebP, EXR, HDR, TIFF, BMP, GIF)");
+        fail_to_read(name, "its first bytes are of no known format (PNG, JPEG, WebP, EXR, HDR, TIFF, BMP, GIF, DDS)");
     use_our_thread_count();
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
     OIIO::ImageSpec config = straight_alpha_request();

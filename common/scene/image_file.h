@@ -28,6 +28,10 @@ struct ImageLoading {
     std::uint64_t max_pixels = std::uint64_t(1) << 28;
 };
 
+/// The format of a file's bytes, by the first of them: "png", "jpg", "webp", "exr", "hdr", "tif", "bmp", "gif", "dds",
+/// which can be read, "ktx2" or "avif", which can't; "" if unknown.
+std::string image_format(std::span<const std::byte> bytes);
+
 /// Loads the first image of a file. Alpha comes out straight, also from formats that store it premultiplied (EXR);
 /// where alpha is 0, or when alpha is dropped, the stored colour is kept. Non-finite values are passed on. Throws
 /// InputError with the path.
