@@ -1,10 +1,12 @@
 // `kokage grow`: a tree from a species, as glTF.
 #include "common/services/count_text.h"
+#include "common/services/error.h"
 #include "common/services/output_file.h"
 #include "common/services/stopwatch.h"
 #include "trees/growth.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
+#include "viewer/grow_variants.h"
 #include "viewer/output_check.h"
 #include "viewer/stop_signal.h"
 #include "viewer/tree_source.h"
@@ -21,6 +23,7 @@ namespace {
 struct GrowOptions {
     TreeSource source;
     std::optional<std::uint64_t> seed;
+    std::string seeds;
     std::filesystem::path output;
     bool list = false;
     std::string describe;
@@ -67,6 +70,16 @@ void grow_and_write(GrowOptions options, const CommandContext& context) {
     if (options.seed)
         options.source.settings.push_back("seed=" + std::to_string(*options.seed));
     check_tree_source(options.source);
+    if (!options.seeds.empty()) {
+        if (options.seed)
+            throw InputError("--seed and --seeds contradict one another; leave one of them out");
+        if (lower_ending(options.output) == ".glb")
+            throw InputError("--seeds: many trees need a folder; give -o FOLDER, not '" + options.output.string() +
+                             "'");
+        return grow_variants(
+            options.source, seeds_from(options.seeds),
+            options.output.empty() ? std::filesystem::path(options.source.stem() + "-trees") : options.output, context);
+    }
     if (options.output.empty())
         options.output = options.source.stem() + ".glb";
     check_output(options.output, "the tree", {".glb"});
@@ -92,6 +105,7 @@ Command grow_command(CLI::App& program) {
     const auto options = std::make_shared<GrowOptions>();
     CLI::App* app = program.add_subcommand("grow", "Grow a tree and write it as glTF");
     app->footer("\nExample: kokage grow oak --seed 7 --leaves 50000 -o mine.glb\n"
+                "         kokage grow birch --seeds 1..20 -o birches\n"
                 "         kokage grow --describe beech -o my-beech.json    a species file to change\n"
                 "         kokage grow my-beech.json");
     app->add_option("SPECIES", options->source.name, "What to grow: a species (--list names all) or a file of your own")
@@ -101,8 +115,15 @@ Command grow_command(CLI::App& program) {
         ->check(whole_number())
         ->type_name("N")
         ->group("Tree");
+    app->add_option(
+           "--seeds", options->seeds,
+           "Many individuals, such as 1..20, into the folder -o with a manifest.json that lists them; a run that "
+           "was stopped goes on where it was")
+        ->type_name("FIRST..LAST")
+        ->group("Tree");
     add_growing_options(*app, options->source);
-    app->add_option("-o,--output", options->output, "Where to write it (otherwise SPECIES.glb here)")
+    app->add_option("-o,--output", options->output,
+                    "Where to write it (otherwise SPECIES.glb here; with --seeds a folder, otherwise SPECIES-trees)")
         ->type_name("FILE");
     app->add_flag("--list", options->list, "List the species and do nothing else");
     app->add_option(
