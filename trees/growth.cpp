@@ -46,12 +46,22 @@ Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* re
     GrownSkeleton grown = make_skeleton(std::move(wood), parameters);
     end_stage("skeleton");
     tree.parts.resize(2);
-    tree.materials.push_back(bark_material(parameters));
-    tree.bark_patch_count = make_bark(grown.skeleton, parameters, tree.parts[0]);
+    std::vector<BarkPlace> places;
+    TreePart all_bark;
+    tree.bark_patch_count = make_bark(grown.skeleton, parameters, all_bark, &places);
+    BarkInZones bark = split_by_zone(all_bark, places, parameters);
+    tree.materials.push_back(bark_material(parameters, bark.zones[0]));
+    tree.parts[0] = std::move(bark.parts[0]);
     end_stage("bark");
     tree.materials.push_back(leaf_material(parameters));
     tree.parts[1].material = 1;
     make_leaves(grown, parameters, {0, crown.widest_m, 0}, tree.parts[1], tree.leaves);
+    // Part 0 is the foot's bark, part 1 the leaves; other zones of bark follow.
+    for (std::size_t zone = 1; zone < bark.zones.size(); ++zone) {
+        tree.parts.push_back(std::move(bark.parts[zone]));
+        tree.parts.back().material = std::uint32_t(tree.materials.size());
+        tree.materials.push_back(bark_material(parameters, bark.zones[zone]));
+    }
     tree.skeleton = std::move(grown.skeleton);
     end_stage("leaves");
     return tree;

@@ -41,6 +41,7 @@ struct TubeFace {
 struct BarkPiece {
     TreePart part;
     std::uint32_t patches = 0;
+    std::vector<BarkPlace> places;
 };
 
 class TubeBuilder {
@@ -226,8 +227,11 @@ class TubeBuilder {
         std::stable_sort(faces_.begin(), faces_.end(),
                          [&](const TubeFace& a, const TubeFace& b) { return key(a) < key(b); });
         for (std::size_t i = 0; i < faces_.size(); ++i) {
-            if (i == 0 || key(faces_[i]) != key(faces_[i - 1]))
+            if (i == 0 || key(faces_[i]) != key(faces_[i - 1])) {
                 ++piece.patches;
+                const Ring& ring = rings_[faces_[i].segment];
+                piece.places.push_back({ring.radius_m, ring.centre.y, is_trunk_});
+            }
             piece.part.triangle_patch.push_back(piece.patches - 1);
         }
     }
@@ -246,7 +250,8 @@ class TubeBuilder {
 
 } // namespace
 
-std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parameters, TreePart& part) {
+std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parameters, TreePart& part,
+                        std::vector<BarkPlace>* places) {
     constexpr std::size_t block = 64;
     const std::vector<Tube> tubes = make_tubes(skeleton, parameters);
     const std::size_t count = tubes.size();
@@ -268,6 +273,8 @@ std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parame
         for (const std::uint32_t patch : piece.part.triangle_patch)
             part.triangle_patch.push_back(patches + patch);
         patches += piece.patches;
+        if (places)
+            places->insert(places->end(), piece.places.begin(), piece.places.end());
     }
     return patches;
 }

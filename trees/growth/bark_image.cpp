@@ -11,7 +11,7 @@ namespace kokage {
 namespace {
 
 struct BarkMeasures {
-    glm::vec3 young, old; ///< mean colours
+    glm::vec3 twig, young, old; ///< mean colours
     float young_depth_m, old_depth_m, roughness;
 };
 
@@ -20,16 +20,16 @@ struct BarkMeasures {
 // 10331; 2022, Ecology and Evolution 12:e8718). The oak's is the one that this program began with. Depths: field
 // guides' "smooth" is taken as 1 to 2 mm, "deeply fissured" as 15 to 30 mm.
 constexpr std::array<BarkMeasures, 10> measures = {{
-    {{0.170f, 0.155f, 0.130f}, {0.150f, 0.130f, 0.110f}, 0.006f, 0.022f, 0.95f}, // oak
-    {{0.250f, 0.245f, 0.220f}, {0.235f, 0.230f, 0.205f}, 0.001f, 0.002f, 0.85f}, // beech
-    {{0.540f, 0.515f, 0.470f}, {0.180f, 0.165f, 0.150f}, 0.001f, 0.018f, 0.75f}, // birch
-    {{0.200f, 0.180f, 0.150f}, {0.185f, 0.165f, 0.140f}, 0.004f, 0.009f, 0.95f}, // maple
-    {{0.190f, 0.170f, 0.120f}, {0.155f, 0.132f, 0.102f}, 0.010f, 0.028f, 0.95f}, // willow
-    {{0.300f, 0.300f, 0.215f}, {0.150f, 0.142f, 0.118f}, 0.002f, 0.018f, 0.85f}, // aspen
-    {{0.340f, 0.180f, 0.085f}, {0.185f, 0.135f, 0.105f}, 0.002f, 0.022f, 0.90f}, // pine
-    {{0.165f, 0.120f, 0.090f}, {0.150f, 0.120f, 0.100f}, 0.002f, 0.005f, 0.95f}, // spruce
-    {{0.195f, 0.140f, 0.105f}, {0.190f, 0.155f, 0.125f}, 0.002f, 0.006f, 0.95f}, // cypress
-    {{0.150f, 0.092f, 0.070f}, {0.140f, 0.100f, 0.080f}, 0.002f, 0.004f, 0.50f}, // cherry
+    {{0.170f, 0.140f, 0.100f}, {0.170f, 0.155f, 0.130f}, {0.150f, 0.130f, 0.110f}, 0.006f, 0.022f, 0.95f}, // oak
+    {{0.130f, 0.108f, 0.088f}, {0.250f, 0.245f, 0.220f}, {0.235f, 0.230f, 0.205f}, 0.001f, 0.002f, 0.85f}, // beech
+    {{0.085f, 0.056f, 0.045f}, {0.540f, 0.515f, 0.470f}, {0.180f, 0.165f, 0.150f}, 0.001f, 0.018f, 0.75f}, // birch
+    {{0.160f, 0.120f, 0.085f}, {0.200f, 0.180f, 0.150f}, {0.185f, 0.165f, 0.140f}, 0.004f, 0.009f, 0.95f}, // maple
+    {{0.250f, 0.225f, 0.080f}, {0.190f, 0.170f, 0.120f}, {0.155f, 0.132f, 0.102f}, 0.010f, 0.028f, 0.95f}, // willow
+    {{0.165f, 0.135f, 0.090f}, {0.300f, 0.300f, 0.215f}, {0.150f, 0.142f, 0.118f}, 0.002f, 0.018f, 0.85f}, // aspen
+    {{0.230f, 0.155f, 0.090f}, {0.340f, 0.180f, 0.085f}, {0.185f, 0.135f, 0.105f}, 0.002f, 0.022f, 0.90f}, // pine
+    {{0.210f, 0.130f, 0.072f}, {0.165f, 0.120f, 0.090f}, {0.150f, 0.120f, 0.100f}, 0.002f, 0.005f, 0.95f}, // spruce
+    {{0.120f, 0.105f, 0.060f}, {0.195f, 0.140f, 0.105f}, {0.190f, 0.155f, 0.125f}, 0.002f, 0.006f, 0.95f}, // cypress
+    {{0.130f, 0.082f, 0.062f}, {0.150f, 0.092f, 0.070f}, {0.140f, 0.100f, 0.080f}, 0.002f, 0.004f, 0.50f}, // cherry
 }};
 
 /// Scales the image's channels so that their means are `mean`; what would pass 1 stays at 1.
@@ -55,6 +55,14 @@ void set_range(Image& height) {
 }
 
 } // namespace
+
+glm::vec3 young_twig_color(BarkKind kind) {
+    return measures.at(std::size_t(kind)).twig;
+}
+
+float bark_roughness(BarkKind kind) {
+    return measures.at(std::size_t(kind)).roughness;
+}
 
 glm::vec3 mean_bark_color(BarkKind kind, float age) {
     const BarkMeasures& m = measures.at(std::size_t(kind));

@@ -21,6 +21,10 @@ struct BarkImage {
 /// image with any number of threads. Throws std::invalid_argument unless 1 <= size <= 8192 and 0 <= age <= 1.
 BarkImage bark_image(BarkKind kind, float age, int size = 256);
 
+/// Colour of twigs in their first years.
+glm::vec3 young_twig_color(BarkKind kind);
+
+float bark_roughness(BarkKind kind);
 /// Mean colour of that image, which is scaled to it.
 glm::vec3 mean_bark_color(BarkKind kind, float age);
 

@@ -51,15 +51,20 @@ TreeMaterial leaf_material(const GrowthParameters& p) {
     return material;
 }
 
-TreeMaterial bark_material(const GrowthParameters& p) {
-    constexpr float age = 0.3f;
+TreeMaterial bark_material(const GrowthParameters& p, const BarkZone& zone) {
     TreeMaterial material;
-    material.name = p.species + " bark";
     material.double_sided = false;
-    material.base_color = mean_bark_color(p.bark, age);
-    const std::shared_ptr<const BarkImage> bark = drawn_bark(p.bark, age);
-    material.roughness = bark->roughness;
+    if (zone.is_twig) {
+        material.name = p.species + " twig";
+        material.base_color = young_twig_color(p.bark);
+        material.roughness = 0.8f;
+        return material;
+    }
+    material.name = p.species + (zone.age == 1 ? " old bark" : zone.age == 0.5f ? " middle bark" : " bark");
+    material.base_color = mean_bark_color(p.bark, zone.age);
+    material.roughness = bark_roughness(p.bark);
     if (p.textures) {
+        const std::shared_ptr<const BarkImage> bark = drawn_bark(p.bark, zone.age);
         material.base_color_texture = std::shared_ptr<const Image>(bark, &bark->color);
         material.base_color = glm::vec3(1.f);
     }

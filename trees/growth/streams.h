@@ -5,7 +5,18 @@
 /// others.
 namespace kokage::streams {
 
-enum Purpose : std::uint64_t { crown_lobes = 1, attractors, trunk, limb, branch, shoot, leaf, textures, bark };
+enum Purpose : std::uint64_t {
+    crown_lobes = 1,
+    attractors,
+    trunk,
+    limb,
+    branch,
+    shoot,
+    leaf,
+    textures,
+    bark,
+    bark_zone
+};
 
 /// The stream of the index-th thing of a purpose.
 inline std::uint64_t of(Purpose purpose, std::uint64_t index) {

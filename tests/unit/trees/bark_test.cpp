@@ -39,7 +39,7 @@ struct WeldedBark {
 
 TEST(Bark, IsAClosedManifold) {
     const Tree tree = oak(3000);
-    const WeldedBark bark(tree.parts[0]);
+    const WeldedBark bark(all_bark(tree));
     for (const Mesh::FaceHandle face : bark.faces)
         ASSERT_TRUE(face.is_valid()) << "OpenMesh takes manifold faces only";
     for (const auto edge : bark.mesh.edges())
@@ -54,7 +54,7 @@ TEST(Bark, IsAClosedManifold) {
 
 TEST(Bark, HasNoDegenerateTrianglesAndFacesOutwards) {
     const Tree tree = oak(5000);
-    const TreePart& bark = tree.parts[0];
+    const TreePart bark = all_bark(tree);
     double volume = 0;
     std::size_t agree = 0;
     for (const glm::uvec3& t : bark.triangles) {
@@ -81,7 +81,7 @@ TEST(Bark, HasNoDegenerateTrianglesAndFacesOutwards) {
 
 TEST(Bark, PatchesAreConsecutiveAndSmall) {
     const Tree tree = oak(30000);
-    const TreePart& bark = tree.parts[0];
+    const TreePart bark = all_bark(tree);
     EXPECT_GT(bark.triangles.size(), tree.leaves.size());
     EXPECT_LT(bark.triangles.size(), 3 * tree.leaves.size());
     std::set<std::uint32_t> seen;
@@ -114,7 +114,7 @@ double stretch(const TreePart& part, const glm::uvec3& t) {
 
 TEST(Bark, TextureIsNotStretched) {
     const Tree tree = oak(30000);
-    const TreePart& bark = tree.parts[0];
+    const TreePart bark = all_bark(tree);
     double area = 0, stretched = 0;
     for (const glm::uvec3& t : bark.triangles) {
         const double here = triangle_area(bark, t);
@@ -127,7 +127,7 @@ TEST(Bark, TextureIsNotStretched) {
 TEST(Bark, StandsOnTheGround) {
     const Tree tree = oak(3000);
     float lowest = 1e30f;
-    for (const glm::vec3& p : tree.parts[0].positions)
+    for (const glm::vec3& p : all_bark(tree).positions)
         lowest = std::min(lowest, p.y);
     EXPECT_NEAR(lowest, 0.f, 1e-6f);
 }

@@ -41,6 +41,23 @@ inline bool is_sound(const Tree& tree) {
     return true;
 }
 
+/// The bark of all zones as one part.
+inline TreePart all_bark(const Tree& tree) {
+    TreePart bark;
+    for (const TreePart& part : tree.parts) {
+        if (part.kind != TreePartKind::bark)
+            continue;
+        const std::uint32_t first = std::uint32_t(bark.positions.size());
+        bark.positions.insert(bark.positions.end(), part.positions.begin(), part.positions.end());
+        bark.normals.insert(bark.normals.end(), part.normals.begin(), part.normals.end());
+        bark.uvs.insert(bark.uvs.end(), part.uvs.begin(), part.uvs.end());
+        for (const glm::uvec3& t : part.triangles)
+            bark.triangles.push_back(t + glm::uvec3(first));
+        bark.triangle_patch.insert(bark.triangle_patch.end(), part.triangle_patch.begin(), part.triangle_patch.end());
+    }
+    return bark;
+}
+
 /// The crown as foresters measure it: its reach in 16 directions, height, and where leaves begin.
 struct CrownShape {
     double projection = 0, width = 0, height = 0, lowest_leaf = 1e30, leaf_area = 0, mean_inclination_degrees = 0,
