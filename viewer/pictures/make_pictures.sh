@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes the pictures of README.md: viewer/pictures/oak.jpg and viewer/pictures/contact_sheet.jpg.
+# Makes the pictures of README.md: viewer/pictures/oak.jpg, viewer/pictures/species.jpg and viewer/pictures/contact_sheet.jpg.
 #
 #   viewer/pictures/make_pictures.sh [PROGRAM]
 #
@@ -30,6 +30,17 @@ environment_source() {
 
 "$program" shade oak --image "$work/oak.png" --image-size 1280x800 --samples 48
 oiiotool "$work/oak.png" --compression jpeg:88 -o "$here/oak.jpg"
+
+# The ten species, in leaf and bare, side by side.
+species=(oak beech birch maple willow aspen pine spruce cypress cherry)
+leafy=() bare=()
+for name in "${species[@]}"; do
+    "$program" shade "$name" --quiet --error 0.1 --image "$work/$name.png" --image-size 360x360 --samples "$samples"
+    "$program" shade "$name" --quiet --error 0.1 --set season=winter --image "$work/$name-bare.png" --image-size 360x360 --samples "$samples"
+    leafy+=("$work/$name.png") bare+=("$work/$name-bare.png")
+    echo "made: $name"
+done
+oiiotool "${leafy[@]:0:5}" "${bare[@]:0:5}" "${leafy[@]:5}" "${bare[@]:5}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
 
 tiles=() rows=0 columns=0
 for environment in "${environments[@]}"; do
