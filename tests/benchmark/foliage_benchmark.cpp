@@ -1,8 +1,8 @@
 #include "tests/benchmark/foliage_benchmark.h"
 #include "common/services/error.h"
-#include "common/services/output_file.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
+#include "tests/benchmark/benchmark_files.h"
 #include "tests/benchmark/benchmark_plan.h"
 #include "tests/benchmark/calibration.h"
 #include "tests/benchmark/effort_plot.h"
@@ -127,13 +127,9 @@ class Run {
         nlohmann::json records = nlohmann::json::array();
         for (const FoliageRecord& record : records_)
             records.push_back(to_json(record));
-        write_file(options_.output_folder / "foliage.json", records.dump(1) + "\n");
-        std::string text = "# Benchmark of foliage shading\n\nCalibration loop: " + std::to_string(calibration_) +
-                           " CPU-s. " + std::to_string(thread_count()) + " threads.\n\n" +
-                           summary_table(summarise(records_)) + "\n" + record_table(records_);
-        for (const std::string& line : notes_)
-            text += "\n- " + line;
-        write_file(options_.output_folder / "foliage.md", text + "\n");
+        write_benchmark(options_.output_folder, "foliage", records,
+                        {"Benchmark of foliage shading", calibration_, summary_table(summarise(records_)),
+                         record_table(records_), notes_});
     }
 
     const FoliageBenchmarkOptions& options_;

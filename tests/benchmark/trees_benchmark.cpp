@@ -1,9 +1,9 @@
 #include "tests/benchmark/trees_benchmark.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
-#include "common/services/output_file.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
+#include "tests/benchmark/benchmark_files.h"
 #include "tests/benchmark/calibration.h"
 #include "tests/benchmark/markdown.h"
 #include "tests/benchmark/peer_generators.h"
@@ -113,13 +113,9 @@ class Run {
         nlohmann::json records = nlohmann::json::array();
         for (const TreeRecord& record : records_)
             records.push_back(to_json(record));
-        write_file(options_.output_folder / "trees.json", records.dump(1) + "\n");
-        std::string text = "# Benchmark of growing\n\nCalibration loop: " + std::to_string(calibration_) + " CPU-s. " +
-                           std::to_string(thread_count()) + " threads.\n\n" + growth_figures(records_) + "\n" +
-                           growth_table(records_);
-        for (const std::string& line : notes_)
-            text += "\n- " + line;
-        write_file(options_.output_folder / "trees.md", text + "\n");
+        write_benchmark(
+            options_.output_folder, "trees", records,
+            {"Benchmark of growing", calibration_, growth_figures(records_), growth_table(records_), notes_});
     }
 
     const TreesBenchmarkOptions& options_;
