@@ -18,7 +18,7 @@ namespace {
 /// of about two steps lets a branch end within reach of its leaves (Runions et al. 2007, section 3).
 constexpr float step_share = 0.36f, influence_share = 4.5f, kill_share = 0.75f;
 /// Shoots that one attraction point stands for.
-constexpr double shoots_per_attractor = 2.2;
+constexpr double shoots_per_point = 2.2;
 
 } // namespace
 
@@ -37,13 +37,15 @@ Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* re
     tree.name = parameters.species;
     tree.source = "grown: " + parameters.species + ", seed " + std::to_string(parameters.seed);
     const Crown crown(parameters);
-    const int attractor_count =
-        std::max(1, int(std::lround(parameters.leaves / parameters.leaves_per_shoot / shoots_per_attractor)));
-    const Crown::Attractors attractors = crown.attractors(attractor_count);
-    const float spacing = attractors.spacing_m, step = step_share * spacing;
-    std::vector<WoodNode> wood = grow_scaffold(parameters, crown, step);
-    colonise(wood, attractors, parameters, step, influence_share * spacing, kill_share * spacing, progress);
-    GrownSkeleton grown = make_skeleton(std::move(wood), parameters);
+    const int point_count = std::max(
+        1, int(std::lround(parameters.leaves / leaves_on_a_shoot(parameters, crown.height_m) / shoots_per_point)));
+    const float spacing = crown.spacing_m(point_count), step = step_share * spacing;
+    Scaffold scaffold = grow_scaffold(parameters, crown, step);
+    const std::vector<glm::vec3> points = crown.attractors(point_count, scaffold.limbs);
+    const SkyLight light(points, parameters.leaves * mean_leaf_area(parameters));
+    std::vector<WoodNode> wood = std::move(scaffold.nodes);
+    colonise(wood, points, light, parameters, {step, influence_share * spacing, kill_share * spacing}, progress);
+    GrownSkeleton grown = make_skeleton(std::move(wood), light, crown.height_m, parameters);
     end_stage("skeleton");
     tree.parts.resize(2);
     std::vector<BarkPlace> places;

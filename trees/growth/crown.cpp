@@ -1,6 +1,6 @@
 #include "trees/growth/crown.h"
 
-#include "common/services/random.h"
+#include "trees/growth/directions.h"
 #include "trees/growth/leaf_shape.h"
 #include "trees/growth/streams.h"
 
@@ -9,9 +9,7 @@
 
 namespace kokage {
 
-Crown::Crown(const GrowthParameters& p)
-    : lobe_depth_(float(p.crown_lobe_depth)), roundness_(float(p.crown_roundness)), shell_(float(p.crown_shell)),
-      clumping_(float(p.crown_clumping)), seed_(p.seed) {
+Crown::Crown(const GrowthParameters& p) : p_(p) {
     const double projection = p.leaves * mean_leaf_area(p) / p.leaf_area_index;
     // The hollows between billows take more of the crown's projection than shoots beyond the outline add: measured over
     // seeds, the crown that grows has 0.92 times the projection of its nominal outline. A seedling is never smaller
@@ -23,8 +21,8 @@ Crown::Crown(const GrowthParameters& p)
     base_m = float(height_m * p.crown_base);
     widest_m = float(base_m + (height_m - base_m) * p.crown_widest);
     lower_depth_m_ =
-        float((widest_m - base_m) / std::pow(1 - std::pow(p.crown_bottom, p.crown_roundness), 1 / p.crown_roundness));
-    Random random(seed_, streams::crown_lobes);
+        float((widest_m - base_m) / std::pow(1 - std::pow(p.crown_bottom, p.crown_underside), 1 / p.crown_underside));
+    Random random(p.seed, streams::crown_lobes);
     for (int i = 0; i < p.crown_lobes; ++i) {
         // A jittered Fibonacci spiral over the sphere.
         const float y = 1 - 2 * (float(i) + random.uniform()) / float(p.crown_lobes);
@@ -56,7 +54,7 @@ float Crown::lobe_scale(const glm::vec3& direction) const {
     float best = 0;
     for (const Lobe& lobe : lobes_)
         best = std::max(best, lobe.size * std::exp(lobe_sharpness_ * (glm::dot(direction, lobe.direction) - 1)));
-    return 1 - lobe_depth_ * (1 - best);
+    return 1 - float(p_.crown_lobe_depth) * (1 - best);
 }
 
 float Crown::relative_distance(const glm::vec3& point) const {
@@ -64,50 +62,97 @@ float Crown::relative_distance(const glm::vec3& point) const {
     const float length = glm::length(n);
     if (length < 1e-6f)
         return 0;
-    const float super =
-        std::pow(std::pow(std::hypot(n.x, n.z), roundness_) + std::pow(std::abs(n.y), roundness_), 1 / roundness_);
+    const float e = float(n.y >= 0 ? p_.crown_roundness : p_.crown_underside);
+    const float super = std::pow(std::pow(std::hypot(n.x, n.z), e) + std::pow(std::abs(n.y), e), 1 / e);
     return super / lobe_scale(n / length);
 }
 
-Crown::Attractors Crown::attractors(int count) const {
-    Random random(seed_, streams::attractors);
-    const float lowest = base_m - 0.33f * (widest_m - base_m);
-    const auto point_in_box = [&] {
-        return glm::vec3(random.uniform(-radius_m, radius_m), random.uniform(lowest, height_m),
-                         random.uniform(-radius_m, radius_m));
-    };
-    // The crown's edge belongs to it: shoots and leaves grow a little beyond the points, so the points stay a little
-    // inside.
-    const auto density = [&](const glm::vec3& point) {
-        const float distance = relative_distance(point);
-        return distance > 1 || point.y < base_towards(point) ? 0.f : 0.04f + 0.96f * std::pow(distance, shell_);
-    };
-    Attractors result;
-    std::vector<glm::vec3> clumps;
-    const std::size_t clump_count = std::size_t(std::max(1, count / 14));
-    std::size_t tried = 0;
-    const std::size_t most = 4000 * (std::size_t(count) + 100);
-    const auto draw = [&](std::vector<glm::vec3>& points, std::size_t until) {
-        while (points.size() < until && tried++ < most)
-            if (const glm::vec3 p = point_in_box(); random.uniform() < density(p))
-                points.push_back(p);
-    };
-    draw(result.points, std::size_t(std::lround(double(count) * (1 - clumping_))));
-    draw(clumps, clump_count);
-    const float box = 4 * radius_m * radius_m * (height_m - lowest);
-    const float clump_radius = 0.5f * std::cbrt(box / float(clump_count) * 0.35f);
-    while (result.points.size() < std::size_t(count) && !clumps.empty() && tried++ < 2 * most) {
-        const glm::vec3 centre = clumps[random.below(std::uint32_t(clumps.size()))];
-        const glm::vec3 offset{random.uniform(-1, 1), random.uniform(-1, 1), random.uniform(-1, 1)};
-        const glm::vec3 p = centre + clump_radius * glm::vec3(offset.x, 0.7f * offset.y, offset.z);
-        if (glm::length(offset) < 1 && p.y >= base_towards(p) && relative_distance(p) < 1.03f)
-            result.points.push_back(p);
-    }
-    while (result.points.size() < std::size_t(count)) // a crown too thin to hit by chance
-        result.points.push_back({0, random.uniform(base_m, height_m), 0});
+glm::vec3 Crown::lowest_corner() const {
+    return {-radius_m, base_m - 0.33f * (widest_m - base_m), -radius_m};
+}
+
+float Crown::spacing_m(int count) const {
     // Where the crown is full, points are as dense as if the whole box were filled with 1.6 times as many.
-    result.spacing_m = std::cbrt(box / (1.6f * float(count)));
-    return result;
+    return std::cbrt(4 * radius_m * radius_m * (height_m - lowest_corner().y) / (1.6f * float(count)));
+}
+
+/// The crown's edge belongs to it: shoots and leaves grow a little beyond the points, so the points stay a little
+/// inside.
+float Crown::density(const glm::vec3& point) const {
+    const float distance = relative_distance(point);
+    return distance > 1 || point.y < base_towards(point) ? 0.f
+                                                         : 0.04f + 0.96f * std::pow(distance, float(p_.crown_shell));
+}
+
+void Crown::draw_points(std::vector<glm::vec3>& points, std::size_t until, Random& random) const {
+    const glm::vec3 low = lowest_corner(), high(radius_m, height_m, radius_m);
+    for (std::size_t tries = 4000 * (until + 100); points.size() < until && tries > 0; --tries) {
+        const float x = random.uniform(low.x, high.x), y = random.uniform(low.y, high.y),
+                    z = random.uniform(low.z, high.z);
+        if (random.uniform() < density({x, y, z}))
+            points.emplace_back(x, y, z);
+    }
+}
+
+void Crown::draw_in_clumps(std::vector<glm::vec3>& points, std::size_t until, Random& random) const {
+    std::vector<glm::vec3> clumps;
+    draw_points(clumps, std::max<std::size_t>(1, until / 14), random);
+    if (clumps.empty())
+        return;
+    const float box = 4 * radius_m * radius_m * (height_m - lowest_corner().y);
+    const float clump_radius = 0.5f * std::cbrt(box / float(clumps.size()) * 0.35f);
+    for (std::size_t tries = 4000 * (until + 100); points.size() < until && tries > 0; --tries) {
+        const glm::vec3 centre = clumps[random.below(std::uint32_t(clumps.size()))];
+        const float x = random.uniform(-1, 1), y = random.uniform(-1, 1), z = random.uniform(-1, 1);
+        const glm::vec3 p = centre + clump_radius * glm::vec3(x, 0.7f * y, z);
+        if (glm::length(glm::vec3(x, y, z)) < 1 && p.y >= base_towards(p) && relative_distance(p) < 1.03f)
+            points.push_back(p);
+    }
+}
+
+/// A layer is a limb's own foliage: a level leaf-shaped sheet around it, `layer_width` wide and `layer_depth` deep.
+void Crown::draw_in_layers(std::vector<glm::vec3>& points, std::size_t until, const std::vector<Limb>& limbs,
+                           Random& random) const {
+    std::vector<float> area_before{0.f};
+    for (const Limb& limb : limbs)
+        area_before.push_back(area_before.back() + limb.length_m * limb.length_m);
+    if (area_before.back() <= 0)
+        return;
+    for (std::size_t tries = 400 * (until + 100); points.size() < until && tries > 0; --tries) {
+        const auto next =
+            std::upper_bound(area_before.begin() + 1, area_before.end() - 1, random.uniform() * area_before.back());
+        const Limb& limb = limbs[std::size_t(next - area_before.begin()) - 1];
+        const float along = random.uniform(float(p_.limb_bare), 1.06f), sideways = random.uniform(-1, 1),
+                    depth = random.uniform(-1, 1);
+        // Widest a third of the way, narrow at both ends.
+        const float wide = std::sqrt(std::max(0.f, std::min(1.f, (along - float(p_.limb_bare) + 0.08f) / 0.3f))) *
+                           std::sqrt(std::max(0.f, 1.1f - along));
+        if (random.uniform() > wide)
+            continue;
+        const float place = std::min(along, 0.999f) * float(limb.course.size() - 1);
+        const std::size_t i = std::size_t(place);
+        const glm::vec3 a = limb.course[i], b = limb.course[i + 1];
+        const glm::vec3 way = unit_or(b - a, {0, 1, 0});
+        const glm::vec3 side = unit_or(glm::cross(way, {0, 1, 0}), {1, 0, 0}), above = glm::cross(side, way);
+        const glm::vec3 point =
+            a + (place - float(i)) * (b - a) + std::max(0.f, along - 0.999f) * limb.length_m * way +
+            limb.length_m * (wide * float(p_.layer_width) * sideways * side + float(p_.layer_depth) * depth * above);
+        if (relative_distance(point) < 1.1f && point.y > 0.01f * height_m &&
+            random.uniform() < 0.1f + 0.9f * std::pow(along, float(p_.crown_shell)))
+            points.push_back(point);
+    }
+}
+
+std::vector<glm::vec3> Crown::attractors(int count, const std::vector<Limb>& limbs) const {
+    Random random(p_.seed, streams::attractors);
+    std::vector<glm::vec3> points;
+    const double layered = limbs.empty() ? 0 : p_.crown_layers, rest = count * (1 - layered);
+    draw_points(points, std::size_t(std::lround(rest * (1 - p_.crown_clumping))), random);
+    draw_in_clumps(points, std::size_t(std::lround(rest)), random);
+    draw_in_layers(points, std::size_t(count), limbs, random);
+    while (points.size() < std::size_t(count)) // a crown too thin to hit by chance
+        points.emplace_back(0, random.uniform(base_m, height_m), 0);
+    return points;
 }
 
 } // namespace kokage

@@ -1,11 +1,18 @@
 #pragma once
 // The crown's outline and the points in it that branches grow towards.
+#include "common/services/random.h"
 #include "common/types.h"
 #include "trees/growth/parameters.h"
 
 #include <vector>
 
 namespace kokage {
+
+/// A main limb's course, from the trunk to its end.
+struct Limb {
+    std::vector<glm::vec3> course; ///< at least 2 points
+    float length_m = 0;
+};
 
 /// A dome: a superellipse of revolution about the trunk, flattened below, with billows. Its size follows from the
 /// number of leaves.
@@ -17,6 +24,7 @@ namespace kokage {
 ///               | |
 class Crown {
   public:
+    /// `parameters` must live as long as the crown.
     explicit Crown(const GrowthParameters& parameters);
 
     float radius_m, height_m, base_m, widest_m;
@@ -25,17 +33,21 @@ class Crown {
     /// relative to the outline in its direction.
     float relative_distance(const glm::vec3& point) const;
 
-    /// Attraction points, `count` of them, denser towards the outline and in clumps; and how far apart they lie.
-    struct Attractors {
-        std::vector<glm::vec3> points;
-        float spacing_m = 0;
-    };
-    Attractors attractors(int count) const;
+    /// How far apart `count` attraction points lie where the crown is full.
+    float spacing_m(int count) const;
+    /// Attraction points, `count` of them: denser towards the outline, in clumps, and in layers along the limbs.
+    std::vector<glm::vec3> attractors(int count, const std::vector<Limb>& limbs) const;
 
   private:
     glm::vec3 normalised(const glm::vec3& point) const;
     float base_towards(const glm::vec3& point) const;
     float lobe_scale(const glm::vec3& direction) const;
+    float density(const glm::vec3& point) const;
+    glm::vec3 lowest_corner() const;
+    void draw_points(std::vector<glm::vec3>& points, std::size_t until, Random& random) const;
+    void draw_in_layers(std::vector<glm::vec3>& points, std::size_t until, const std::vector<Limb>& limbs,
+                        Random& random) const;
+    void draw_in_clumps(std::vector<glm::vec3>& points, std::size_t until, Random& random) const;
 
     struct Lobe {
         glm::vec3 direction;
@@ -43,8 +55,8 @@ class Crown {
     };
     std::vector<Lobe> lobes_;
     glm::vec3 base_phases_{0.f};
-    float lobe_sharpness_ = 1, lobe_depth_ = 0, roundness_ = 2, lower_depth_m_ = 1, shell_ = 0, clumping_ = 0;
-    std::uint64_t seed_;
+    float lobe_sharpness_ = 1, lower_depth_m_ = 1;
+    const GrowthParameters& p_;
 };
 
 } // namespace kokage

@@ -34,15 +34,21 @@ struct GrowthParameters {
 
     // The crown, trunk, limbs, branches and bark: rows in parameters_of_wood.cpp.
     double leaf_area_index = 4.5, height_to_width = 0.84;
-    double crown_base = 0.22, crown_widest = 0.36, crown_bottom = 0.76, crown_roundness = 2.0;
+    double crown_base = 0.22, crown_widest = 0.36, crown_bottom = 0.76, crown_roundness = 2.0, crown_underside = 2.0;
     int crown_lobes = 20;
     double crown_lobe_depth = 0.2, crown_shell = 2.5, crown_clumping = 0.2;
+    double crown_layers = 0, layer_width = 0.3, layer_depth = 0.05;
 
     double trunk_reach = 0.62, trunk_wiggle = 9;
-    int limbs = 9;
-    double limb_first = 0.17, limb_last = 0.52, limb_elevation_low = 14, limb_elevation_high = 62, limb_zigzag = 26,
-           limb_reach = 0.75;
-    double branch_zigzag = 16, branch_up = 0.1, pipe_exponent = 2.0;
+    int limbs = 9, limb_whorl = 1;
+    double limb_divergence = 137.5, limb_first = 0.17, limb_last = 0.52;
+    double limb_elevation_low = 14, limb_elevation_high = 62, limb_bend = 0, limb_zigzag = 26, limb_reach = 0.75,
+           limb_bare = 0.22;
+
+    double branch_angle = 50, branch_angle_spread = 20, apical_dominance = 0.1;
+    double branch_up = 0.1, branch_to_light = 0, branch_zigzag = 16, twig_sag = 0;
+    double light_need = 0, pipe_exponent = 2.0;
+    double shoot_up = 0.12, shoot_hang = 0;
 
     double root_flare = 0.9, bark_tile = 0.4;
 

@@ -31,41 +31,78 @@ std::vector<ParameterRow> crown_rows() {
          real("crown_widest", &P::crown_widest, "of the crown's depth", 0.02, 0.98,
               "Where the crown is widest, from its base."),
          real("crown_bottom", &P::crown_bottom, "of the widest radius", 0, 0.99, "Radius of the crown at its base."),
-         real("crown_roundness", &P::crown_roundness, "", 1, 6, "1: a cone, 2: an ellipsoid, above: boxier."),
+         real("crown_roundness", &P::crown_roundness, "", 0.5, 6,
+              "Its upper outline; 1: a cone, 2: an ellipsoid, above: flat-topped, below: hollow."),
+         real("crown_underside", &P::crown_underside, "", 0.5, 6, "Its lower outline, in the same way."),
          whole("crown_lobes", &P::crown_lobes, "", 0, 400, "Number of billows on the crown's surface."),
          real("crown_lobe_depth", &P::crown_lobe_depth, "of the radius", 0, 0.7,
               "Depth of the hollows between the billows."),
          real("crown_shell", &P::crown_shell, "", 0, 12,
               "How much foliage keeps to the outside of the crown; 0: even."),
-         real("crown_clumping", &P::crown_clumping, "", 0, 1, "Share of the foliage that gathers in clumps.")});
+         real("crown_clumping", &P::crown_clumping, "", 0, 1, "Share of the foliage that gathers in clumps."),
+         real("crown_layers", &P::crown_layers, "", 0, 1,
+              "Share of the foliage that spreads in level sheets around the limbs, so that tiers show."),
+         real("layer_width", &P::layer_width, "of the limb's length", 0.01, 2, "Half the width of such a sheet."),
+         real("layer_depth", &P::layer_depth, "of the limb's length", 0, 1, "Half its depth.")});
 }
 
 std::vector<ParameterRow> trunk_rows() {
     return grouped(
         "trunk and limbs",
-        {real("trunk_reach", &P::trunk_reach, "of the height", 0.05, 0.98, "How high the trunk can be followed."),
+        {real("trunk_reach", &P::trunk_reach, "of the height", 0.05, 1,
+              "How high the trunk can be followed: near 1 for a tree with one leader (excurrent), 0.3 to 0.7 where it "
+              "dissolves in limbs (decurrent)."),
          real("trunk_wiggle", &P::trunk_wiggle, "degrees", 0, 60, "How far the trunk's direction wanders."),
-         whole("limbs", &P::limbs, "", 0, 60, "Number of main limbs on the trunk."),
+         whole("limbs", &P::limbs, "", 0, 400, "Number of main limbs on the trunk."),
+         whole("limb_whorl", &P::limb_whorl, "", 1, 12,
+               "Limbs that leave the trunk at one height: 1 alternate, 2 opposite, more: a whorl."),
+         real("limb_divergence", &P::limb_divergence, "degrees", 0, 360,
+              "Turn around the trunk from one limb or whorl to the next; 137.5 is the golden angle, 90 crosses pairs."),
          real("limb_first", &P::limb_first, "of the height", 0.01, 0.95, "Where the lowest limb leaves the trunk."),
-         real("limb_last", &P::limb_last, "of the height", 0.01, 0.98, "Where the highest limb leaves the trunk."),
+         real("limb_last", &P::limb_last, "of the height", 0.01, 1, "Where the highest limb leaves the trunk."),
          real("limb_elevation_low", &P::limb_elevation_low, "degrees", -60, 89,
               "Angle of the lowest limb above the horizontal."),
          real("limb_elevation_high", &P::limb_elevation_high, "degrees", -60, 89,
               "Angle of the highest limb above the horizontal."),
+         real("limb_bend", &P::limb_bend, "degrees", -120, 120,
+              "How much limbs turn up (or, below 0, down) on their way."),
          real("limb_zigzag", &P::limb_zigzag, "degrees", 0, 80, "How sharply limbs bend at their knees."),
          real("limb_reach", &P::limb_reach, "of the way", 0.05, 1,
-              "How far a limb keeps its course towards the crown's surface.")});
+              "How far a limb keeps its course towards the crown's surface."),
+         real("limb_bare", &P::limb_bare, "of the limb's length", 0, 0.95,
+              "Inner part of a limb that bears no twigs.")});
 }
 
 std::vector<ParameterRow> branch_rows() {
     return grouped(
-        "branches and bark",
-        {real("branch_zigzag", &P::branch_zigzag, "degrees", 0, 60, "How much finer branches wander."),
-         real("branch_up", &P::branch_up, "", -1, 1, "How strongly finer branches turn upwards."),
+        "branches",
+        {real("branch_angle", &P::branch_angle, "degrees", 5, 120,
+              "Mean angle between a branch and the axis that it leaves."),
+         real("branch_angle_spread", &P::branch_angle_spread, "degrees", 0, 60, "Branching angles vary by up to this."),
+         real("apical_dominance", &P::apical_dominance, "", 0, 1,
+              "How much the end of an axis keeps its lead: it runs straight, and branches beside it come late.",
+              "Palubicki et al. 2009, ACM Transactions on Graphics 28(3) 58"),
+         real("branch_up", &P::branch_up, "", -1, 1,
+              "How strongly branches turn up, away from gravity; below 0: down."),
+         real("branch_to_light", &P::branch_to_light, "", 0, 1,
+              "How strongly branches turn to where the sky's light comes from."),
+         real("branch_zigzag", &P::branch_zigzag, "degrees", 0, 60, "How much branches wander."),
+         real("twig_sag", &P::twig_sag, "degrees", 0, 180,
+              "How far thin wood turns down with every tenth of the tree's height that it is long."),
+         real("light_need", &P::light_need, "of the open sky", 0, 0.9,
+              "Twigs with less light than this die and are shed.", "Wiesner 1907, Der Lichtgenuss der Pflanzen"),
+         real("shoot_up", &P::shoot_up, "", -1, 1, "How strongly shoots turn up."),
+         real("shoot_hang", &P::shoot_hang, "of the height", 0, 0.9,
+              "Length of the longest hanging shoots of a weeping tree; 0: shoots don't hang."),
          real("pipe_exponent", &P::pipe_exponent, "", 1.2, 4,
               "Pipe model: radius^e of a branch is the sum over its children; 2 keeps cross-sections.",
-              "Shinozaki et al. 1964, Japanese Journal of Ecology 14"),
-         real("root_flare", &P::root_flare, "of the radius", 0, 3, "How much the trunk widens at the ground."),
+              "Shinozaki et al. 1964, Japanese Journal of Ecology 14")});
+}
+
+std::vector<ParameterRow> bark_rows() {
+    return grouped(
+        "trunk's foot and bark",
+        {real("root_flare", &P::root_flare, "of the radius", 0, 3, "How much the trunk widens at the ground."),
          real("bark_tile", &P::bark_tile, "m", 0.02, 10, "Size of one tile of bark texture on the trunk.")});
 }
 
@@ -73,7 +110,7 @@ std::vector<ParameterRow> branch_rows() {
 
 std::vector<ParameterRow> wood_rows() {
     std::vector<ParameterRow> rows;
-    for (auto* group : {tree_rows, crown_rows, trunk_rows, branch_rows}) {
+    for (auto* group : {tree_rows, crown_rows, trunk_rows, branch_rows, bark_rows}) {
         const std::vector<ParameterRow> more = group();
         rows.insert(rows.end(), more.begin(), more.end());
     }

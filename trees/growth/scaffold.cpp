@@ -9,69 +9,119 @@
 namespace kokage {
 namespace {
 
-/// Appends steps from `from` towards `target` that wander: at every knee the course turns by up to `bend`, then is
-/// drawn back.
-void grow_axis(std::vector<WoodNode>& nodes, std::int32_t from, std::int32_t axis, glm::vec3 direction,
-               const glm::vec3& target, float length, float step, float bend, float knee_distance, float bare_share,
-               Random& random) {
+/// How an axis wanders along its course.
+struct Wander {
+    float bend_rad;        ///< how sharply it turns at a knee
+    float knee_distance_m; ///< from knee to knee
+};
+
+/// A place on a course, `share` of the way along; straight on beyond its end.
+glm::vec3 place_on(const std::vector<glm::vec3>& course, float share) {
+    const float place = share * float(course.size() - 1);
+    const std::size_t i = std::min(std::size_t(place), course.size() - 2);
+    return course[i] + (place - float(i)) * (course[i + 1] - course[i]);
+}
+
+/// Appends steps along a course that wander: at every knee the axis turns off, then is drawn back.
+void grow_axis(std::vector<WoodNode>& nodes, std::int32_t from, std::int32_t axis, const Limb& limb, float step,
+               const Wander& wander, float bare_share, Random& random) {
     glm::vec3 position = nodes[std::size_t(from)].position;
-    const glm::vec3 start = position;
-    const float way = std::max(length, step);
-    float since_knee = 0, next_knee = knee_distance * random.uniform(0.4f, 1.f), grown = 0;
+    glm::vec3 direction = unit_or(limb.course[1] - limb.course[0], {0, 1, 0});
+    const float lowest = 0.3f * position.y, way = std::max(limb.length_m, step);
+    const float drawn_back = std::min(1.f, 1.05f * step / wander.knee_distance_m);
+    const float ahead = std::max(2 * step, 0.8f * wander.knee_distance_m) / way;
+    float since_knee = 0, next_knee = wander.knee_distance_m * random.uniform(0.4f, 1.f), grown = 0;
     float azimuth = random.uniform(0.f, 2 * kPi);
     std::int32_t parent = from;
     while (grown < way) {
-        const float rest = way - grown;
-        // Towards the target, seen from where the axis is now; near its end it runs out in its own direction.
-        const glm::vec3 course = unit_or(target - position, direction);
-        direction = unit_or(direction + std::min(1.f, 0.35f * step / knee_distance * 3.f) * course, direction);
+        direction =
+            unit_or(direction + drawn_back * unit_or(place_on(limb.course, grown / way + ahead) - position, direction),
+                    direction);
         since_knee += step;
         if (since_knee >= next_knee) {
             since_knee = 0;
-            next_knee = knee_distance * random.uniform(0.6f, 1.4f);
+            next_knee = wander.knee_distance_m * random.uniform(0.6f, 1.4f);
             azimuth += kPi + random.uniform(-1.1f, 1.1f); // knees alternate sides
-            direction = tilted(direction, bend * random.uniform(0.5f, 1.f), azimuth);
+            direction = tilted(direction, wander.bend_rad * random.uniform(0.5f, 1.f), azimuth);
         }
-        const float here = std::min(step, rest);
+        const float here = std::min(step, way - grown);
         if (here < 0.25f * step && grown > 0)
             break;
         position += here * direction;
-        position.y = std::max(position.y, start.y * 0.3f);
+        position.y = std::max(position.y, lowest);
         grown += here;
         nodes.push_back({position, parent, axis, grown >= bare_share * way});
         parent = std::int32_t(nodes.size()) - 1;
     }
 }
 
-/// How far a ray from inside the crown goes before it leaves it.
-float distance_to_outline(const Crown& crown, const glm::vec3& from, const glm::vec3& direction) {
-    const float far = 2 * (crown.radius_m + crown.height_m);
+/// A limb's direction in space, turning up by `bend` on its first `bend_over_m` metres and a little beyond.
+struct LimbCourse {
+    float azimuth, elevation, bend = 0, bend_over_m = 1;
+
+    glm::vec3 direction(float at_m) const {
+        const float e = elevation + bend * std::min(at_m / bend_over_m, 1.3f);
+        return {std::cos(e) * std::cos(azimuth), std::sin(e), std::cos(e) * std::sin(azimuth)};
+    }
+};
+
+/// How far a course goes until it leaves the crown; 0 if it never enters.
+float distance_to_outline(const Crown& crown, glm::vec3 place, const LimbCourse& course) {
+    constexpr int pieces = 96;
+    const float piece = 2 * (crown.radius_m + crown.height_m) / float(pieces);
     float inside = 0;
-    for (int i = 1; i <= 96; ++i) {
-        const float t = far * float(i) / 96.f;
-        if (crown.relative_distance(from + t * direction) <= 1)
-            inside = t;
+    for (int i = 1; i <= pieces; ++i) {
+        place += piece * course.direction(piece * (float(i) - 0.5f));
+        if (crown.relative_distance(place) <= 1)
+            inside = piece * float(i);
+        else if (inside > 0)
+            break;
     }
     return inside;
 }
 
+/// The course of a limb as far as `share` of the way to the crown's outline; without points if that is less than a
+/// step.
+Limb plan_limb(const Crown& crown, const glm::vec3& from, LimbCourse course, float share, float step) {
+    // The bend is spread over the way of a straight limb of the same mean elevation.
+    const float straight = distance_to_outline(crown, from, {course.azimuth, course.elevation + 0.5f * course.bend});
+    course.bend_over_m = std::max(straight, step);
+    const float reach = distance_to_outline(crown, from, course);
+    Limb limb;
+    if (reach <= step)
+        return limb;
+    limb.length_m = reach * share;
+    constexpr int pieces = 24;
+    const float piece = limb.length_m / float(pieces);
+    limb.course.push_back(from);
+    for (int i = 0; i < pieces; ++i)
+        limb.course.push_back(limb.course.back() + piece * course.direction(piece * (float(i) + 0.5f)));
+    return limb;
+}
+
 } // namespace
 
-std::vector<WoodNode> grow_scaffold(const GrowthParameters& p, const Crown& crown, float step) {
-    std::vector<WoodNode> nodes;
+Scaffold grow_scaffold(const GrowthParameters& p, const Crown& crown, float step) {
+    Scaffold result;
+    std::vector<WoodNode>& nodes = result.nodes;
     nodes.push_back({{0, 0, 0}, -1, 0, false});
     Random trunk_random(p.seed, streams::trunk);
-    const float trunk_length = crown.height_m * float(p.trunk_reach);
+    const Limb trunk{{{0, 0, 0}, {0, crown.height_m * float(p.trunk_reach), 0}}, crown.height_m * float(p.trunk_reach)};
     const float limb_first = float(std::min(p.limb_first, p.trunk_reach) * crown.height_m);
     const float limb_last = std::max(limb_first, float(std::min(p.limb_last, p.trunk_reach) * crown.height_m));
-    grow_axis(nodes, 0, 0, {0, 1, 0}, {0, crown.height_m, 0}, trunk_length, step, radians(p.trunk_wiggle),
-              std::max(step, 0.16f * crown.height_m), std::min(0.95f, limb_first / trunk_length * 1.3f), trunk_random);
+    grow_axis(nodes, 0, 0, trunk, step, {radians(p.trunk_wiggle), std::max(step, 0.16f * crown.height_m)},
+              std::min(0.95f, limb_first / trunk.length_m * 1.3f), trunk_random);
     const std::size_t trunk_end = nodes.size();
+    const int whorls = (p.limbs + p.limb_whorl - 1) / p.limb_whorl;
     for (int i = 0; i < p.limbs; ++i) {
         Random random(p.seed, streams::of(streams::limb, std::uint64_t(i)));
-        const float rank = p.limbs > 1 ? float(i) / float(p.limbs - 1) : 0.5f;
-        const float height = limb_first + (limb_last - limb_first) *
-                                              std::clamp(rank + random.uniform(-0.5f, 0.5f) / float(p.limbs), 0.f, 1.f);
+        const int whorl = i / p.limb_whorl;
+        const float rank = whorls > 1 ? float(whorl) / float(whorls - 1) : 0.5f;
+        // Limbs of one whorl leave the trunk at about the same height.
+        Random whorl_random(p.seed, streams::of(streams::limb, (1u << 20) + std::uint64_t(whorl)));
+        const float shift = p.limb_whorl == 1 ? random.uniform(-0.5f, 0.5f)
+                                              : whorl_random.uniform(-0.3f, 0.3f) + random.uniform(-0.06f, 0.06f);
+        const float height = limb_first + (limb_last - limb_first) * std::clamp(rank + shift / float(whorls), 0.f, 1.f);
         std::size_t origin = 0;
         for (std::size_t n = 1; n < trunk_end; ++n)
             if (std::abs(nodes[n].position.y - height) < std::abs(nodes[origin].position.y - height))
@@ -79,19 +129,18 @@ std::vector<WoodNode> grow_scaffold(const GrowthParameters& p, const Crown& crow
         const float elevation =
             radians(p.limb_elevation_low + (p.limb_elevation_high - p.limb_elevation_low) * double(rank)) +
             random.uniform(-0.15f, 0.15f);
-        const float azimuth = 2.39996323f * float(i) + random.uniform(-0.35f, 0.35f) + float(p.seed % 1024) * 0.7f;
-        const glm::vec3 course{std::cos(elevation) * std::cos(azimuth), std::sin(elevation),
-                               std::cos(elevation) * std::sin(azimuth)};
-        const glm::vec3 from = nodes[origin].position;
-        const float reach = distance_to_outline(crown, from, course);
-        if (reach <= step)
+        const float azimuth = radians(p.limb_divergence) * float(whorl) +
+                              2 * kPi * float(i % p.limb_whorl) / float(p.limb_whorl) + random.uniform(-0.35f, 0.35f) +
+                              float(p.seed % 1024) * 0.7f;
+        const Limb limb = plan_limb(crown, nodes[origin].position, {azimuth, elevation, radians(p.limb_bend)},
+                                    float(p.limb_reach) * random.uniform(0.85f, 1.1f), step);
+        if (limb.course.empty())
             continue;
-        const glm::vec3 first = unit_or(course + glm::vec3(0, random.uniform(0.f, 0.35f), 0), course);
-        grow_axis(nodes, std::int32_t(origin), i + 1, first, from + reach * course,
-                  reach * float(p.limb_reach) * random.uniform(0.85f, 1.1f), step, radians(p.limb_zigzag),
-                  std::max(step, 0.17f * crown.radius_m), 0.22f, random);
+        grow_axis(nodes, std::int32_t(origin), i + 1, limb, step,
+                  {radians(p.limb_zigzag), std::max(step, 0.17f * crown.radius_m)}, float(p.limb_bare), random);
+        result.limbs.push_back(limb);
     }
-    return nodes;
+    return result;
 }
 
 } // namespace kokage

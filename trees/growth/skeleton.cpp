@@ -41,6 +41,18 @@ std::vector<std::uint32_t> share_out(std::uint32_t total, const std::vector<doub
     return shares;
 }
 
+/// A unit vector turned towards straight down by an angle, no farther than that.
+glm::vec3 turned_down(const glm::vec3& direction, float angle) {
+    const float to_down = std::acos(std::clamp(-direction.y, -1.f, 1.f)), turn = std::min(angle, to_down);
+    const glm::vec3 across = unit_or(glm::vec3(0, -1, 0) + direction.y * direction, {1, 0, 0});
+    return std::cos(turn) * direction + std::sin(turn) * across;
+}
+
+/// Nothing hangs lower than this share of the tree's height.
+constexpr float lowest_share = 0.025f;
+/// A hanging shoot's length over the longest that it could have, on average.
+constexpr double mean_hanging_share = 0.75;
+
 /// How many steps each node lies from the farthest end that it bears.
 std::vector<int> steps_to_end(const std::vector<WoodNode>& nodes) {
     std::vector<int> steps(nodes.size(), 0);
@@ -52,12 +64,13 @@ std::vector<int> steps_to_end(const std::vector<WoodNode>& nodes) {
 
 class SkeletonBuilder {
   public:
-    SkeletonBuilder(std::vector<WoodNode> nodes, const GrowthParameters& p)
-        : nodes_(std::move(nodes)), p_(p), children_(nodes_) {
+    SkeletonBuilder(std::vector<WoodNode> nodes, const SkyLight& light, double height_m, const GrowthParameters& p)
+        : nodes_(std::move(nodes)), light_(light), height_m_(float(height_m)), p_(p), children_(nodes_) {
         place_shoots();
         measure();
         for (int pass = 0; pass < 2; ++pass)
             smooth();
+        sag();
     }
 
     GrownSkeleton build() {
@@ -120,12 +133,58 @@ class SkeletonBuilder {
             where.push_back(nodes_.size() - 1);
             weights.push_back(1);
         }
+        shed(where, weights);
         const std::uint32_t shoots =
-            std::uint32_t(std::clamp(std::round(p_.leaves / p_.leaves_per_shoot), 1.0, double(p_.leaves)));
+            std::uint32_t(std::clamp(std::round(p_.leaves / leaves_on_a_shoot(p_, height_m_)), 1.0, double(p_.leaves)));
         const std::vector<std::uint32_t> shares = share_out(shoots, weights);
         shoots_on_.assign(nodes_.size(), 0);
         for (std::size_t i = 0; i < where.size(); ++i)
             shoots_on_[where[i]] = shares[i];
+    }
+
+    /// Twigs that get less light than the species can live on bear no shoots: their wood is dropped. The one with most
+    /// light always lives.
+    void shed(const std::vector<std::size_t>& where, std::vector<double>& weights) const {
+        if (p_.light_need <= 0)
+            return;
+        std::size_t brightest = 0;
+        float most = -1;
+        for (std::size_t i = 0; i < where.size(); ++i) {
+            const float light = light_.relative(nodes_[where[i]].position);
+            if (light > most) {
+                most = light;
+                brightest = i;
+            }
+            if (double(light) < p_.light_need)
+                weights[i] = 0;
+        }
+        weights[brightest] = std::max(weights[brightest], 0.4);
+    }
+
+    /// Thin wood bends down under its load, more the farther it is from thick wood.
+    void sag() {
+        if (p_.twig_sag <= 0)
+            return;
+        std::vector<glm::vec3> bent(nodes_.size());
+        std::vector<float> thin_m(nodes_.size(), 0.f); ///< length of thin wood up to here
+        constexpr float thin_below = 7;                ///< shoot radii
+        for (std::size_t i = 0; i < nodes_.size(); ++i) {
+            bent[i] = nodes_[i].position;
+            if (nodes_[i].parent < 0)
+                continue;
+            const std::size_t parent = std::size_t(nodes_[i].parent);
+            const glm::vec3 step = nodes_[i].position - nodes_[parent].position;
+            const float length = glm::length(step);
+            const float thinness =
+                std::clamp(1 - radius(std::int32_t(i)) / float(p_.shoot_radius) / thin_below, 0.f, 1.f);
+            thin_m[i] = thin_m[parent] + thinness * length;
+            const float angle = radians(p_.twig_sag) * thin_m[i] / (0.1f * height_m_);
+            bent[i] = bent[parent] + length * turned_down(unit_or(step, {0, 1, 0}), angle);
+            if (step.y < 0 || angle > 0)
+                bent[i].y = std::max(bent[i].y, std::min(nodes_[i].position.y, lowest_share * height_m_));
+        }
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            nodes_[i].position = bent[i];
     }
 
     void measure() {
@@ -189,22 +248,39 @@ class SkeletonBuilder {
             const float angle = radians(p_.shoot_angle) * random.uniform(0.6f, 1.4f);
             const glm::vec3 out =
                 tilted(along, angle, 2.39996323f * float(k) + 1.3f * float(node) + random.uniform(-0.5f, 0.5f));
-            side_shoots_.push_back({branch, order + 1, from, unit_or(out + glm::vec3(0, 0.25f, 0), out), key});
+            side_shoots_.push_back(
+                {branch, order + 1, from, unit_or(out + glm::vec3(0, 2 * float(p_.shoot_up), 0), out), key});
         }
     }
 
-    /// Appends the nodes of a shoot that runs from the last node of `branch`, bending upwards a little.
+    /// Appends the nodes of a shoot that runs from the last node of `branch`, bending upwards a little, or hanging.
     void grow_shoot(Branch& branch, glm::vec3 direction, std::uint64_t key) {
         Random random(p_.seed, streams::of(streams::shoot, key + (1ull << 40)));
         const std::uint32_t first_node = std::uint32_t(branch.nodes.size()) - 1;
-        const float length = float(p_.shoot_length) * random.uniform(0.6f, 1.4f), radius_m = float(p_.shoot_radius);
+        const float radius_m = float(p_.shoot_radius);
+        float length = float(p_.shoot_length) * random.uniform(0.6f, 1.4f);
+        const float hanging = float(p_.shoot_hang) * height_m_ * random.uniform(0.5f, 1.f);
         glm::vec3 position = branch.nodes.back().position;
-        for (int i = 0; i < 2; ++i) {
-            direction = unit_or(direction + 0.2f * random_direction(random) + glm::vec3(0, 0.12f, 0), direction);
-            position += 0.5f * length * direction;
-            branch.nodes.push_back({position, radius_m * (i == 0 ? 0.85f : 0.5f)});
+        if (hanging > length) {
+            // Down to a little above the ground, not all to the same height.
+            length = std::min(hanging, std::max(length, position.y - height_m_ * random.uniform(lowest_share, 0.12f)));
+            constexpr int pieces = 6;
+            for (int i = 0; i < pieces; ++i) {
+                direction = unit_or(direction + 0.1f * random_direction(random) - glm::vec3(0, 0.55f, 0), direction);
+                position += length / float(pieces) * direction;
+                position.y = std::max(position.y, lowest_share * height_m_);
+                branch.nodes.push_back({position, radius_m * (1 - 0.5f * float(i + 1) / float(pieces))});
+            }
+        } else {
+            for (int i = 0; i < 2; ++i) {
+                direction = unit_or(direction + 0.2f * random_direction(random) + glm::vec3(0, float(p_.shoot_up), 0),
+                                    direction);
+                position += 0.5f * length * direction;
+                branch.nodes.push_back({position, radius_m * (i == 0 ? 0.85f : 0.5f)});
+            }
         }
         result_.shoots.push_back({-1, first_node, 0, 0});
+        shoot_lengths_.push_back(length);
     }
 
     /// The end of a branch: its first shoot continues it, the others stand around it.
@@ -229,7 +305,8 @@ class SkeletonBuilder {
     void share_leaves() {
         std::vector<double> weights;
         for (std::size_t i = 0; i < result_.shoots.size(); ++i)
-            weights.push_back(Random(p_.seed, streams::of(streams::leaf, i + (1ull << 40))).uniform(0.6f, 1.4f));
+            weights.push_back(Random(p_.seed, streams::of(streams::leaf, i + (1ull << 40))).uniform(0.6f, 1.4f) *
+                              (p_.shoot_hang > 0 ? shoot_lengths_[i] : 1.f));
         const std::vector<std::uint32_t> shares = share_out(std::uint32_t(p_.leaves), weights);
         std::uint32_t first = 0;
         for (std::size_t i = 0; i < result_.shoots.size(); ++i) {
@@ -240,18 +317,26 @@ class SkeletonBuilder {
     }
 
     std::vector<WoodNode> nodes_;
+    const SkyLight& light_;
+    float height_m_;
     const GrowthParameters& p_;
     Children children_;
     std::vector<std::uint32_t> shoots_on_;
     std::vector<double> load_; ///< shoots that a node bears
     std::vector<SideShoot> side_shoots_;
+    std::vector<float> shoot_lengths_;
     GrownSkeleton result_;
 };
 
 } // namespace
 
-GrownSkeleton make_skeleton(std::vector<WoodNode> nodes, const GrowthParameters& parameters) {
-    return SkeletonBuilder(std::move(nodes), parameters).build();
+double leaves_on_a_shoot(const GrowthParameters& p, double height_m) {
+    return p.leaves_per_shoot * std::max(1.0, mean_hanging_share * p.shoot_hang * height_m / p.shoot_length);
+}
+
+GrownSkeleton make_skeleton(std::vector<WoodNode> nodes, const SkyLight& light, double height_m,
+                            const GrowthParameters& parameters) {
+    return SkeletonBuilder(std::move(nodes), light, height_m, parameters).build();
 }
 
 } // namespace kokage

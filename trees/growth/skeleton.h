@@ -19,10 +19,15 @@ struct GrownSkeleton {
     std::vector<Shoot> shoots;
 };
 
-/// Puts shoots on the ends of the wood, shares `parameters.leaves` out among them, drops wood that bears none, and
-/// reads the rest as branches: where wood forks, the part that bears most goes on as the same branch, the others are
-/// branches of the next order. Radii follow the pipe model (Shinozaki et al. 1964): radius^e = sum over what it bears,
-/// e = pipe_exponent.
-GrownSkeleton make_skeleton(std::vector<WoodNode> nodes, const GrowthParameters& parameters);
+/// Mean number of leaves on a shoot in a tree of this height: hanging shoots are as long as the tree asks for, and bear
+/// more.
+double leaves_on_a_shoot(const GrowthParameters& parameters, double height_m);
+
+/// Puts shoots on the ends of the wood that get enough light to live, shares `parameters.leaves` out among them, drops
+/// wood that bears none, lets thin wood sag, and reads the rest as branches: where wood forks, the part that bears most
+/// goes on as the same branch, the others are branches of the next order. Radii follow the pipe model (Shinozaki et al.
+/// 1964): radius^e = sum over what it bears, e = pipe_exponent.
+GrownSkeleton make_skeleton(std::vector<WoodNode> nodes, const SkyLight& light, double height_m,
+                            const GrowthParameters& parameters);
 
 } // namespace kokage

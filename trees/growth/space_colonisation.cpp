@@ -76,65 +76,125 @@ class AttractionField {
     std::vector<std::uint32_t> first_, order_;
 };
 
-} // namespace
+/// What is known of a node while the wood grows.
+struct Bud {
+    glm::vec3 direction;       ///< of the step that led here
+    glm::vec3 pull{0.f};       ///< sum of the pulls of this round
+    std::int32_t children = 0; ///< steps that set out from here
+    std::int32_t born = 0;     ///< round
+    glm::vec3 last_child{1e30f}, child_before{1e30f};
+    bool is_stuck = false;
+};
 
-void colonise(std::vector<WoodNode>& nodes, const Crown::Attractors& attractors, const GrowthParameters& p, float step,
-              float influence, float kill, Progress& progress) {
-    const std::vector<glm::vec3>& points = attractors.points;
-    AttractionField field(points, influence);
-    for (std::size_t n = 0; n < nodes.size(); ++n)
-        if (nodes[n].may_branch)
-            field.add_node(nodes[n].position, std::int32_t(n));
-    std::vector<std::uint32_t> alive(points.size());
-    for (std::size_t i = 0; i < alive.size(); ++i)
-        alive[i] = std::uint32_t(i);
-    std::vector<glm::vec3> pull(nodes.size(), glm::vec3(0.f));
-    std::vector<glm::vec3> last_child(nodes.size(), glm::vec3(1e30f)), child_before(nodes.size(), glm::vec3(1e30f));
-    std::vector<char> is_stuck(nodes.size(), 0);
-    const float wander = std::sin(radians(p.branch_zigzag));
-    for (int round = 0; round < 4096 && !alive.empty(); ++round) {
-        progress.throw_if_stopped();
-        // Points that are used up, or pull a node that can't follow, drop out.
-        std::erase_if(alive, [&](std::uint32_t i) {
-            return field.distance[i] < kill || (field.nearest[i] >= 0 && is_stuck[std::size_t(field.nearest[i])]);
-        });
-        std::vector<std::int32_t> pulled;
-        for (const std::uint32_t i : alive) {
-            const std::int32_t node = field.nearest[i];
-            if (node < 0)
-                continue;
-            glm::vec3& sum = pull[std::size_t(node)];
-            if (sum == glm::vec3(0.f))
-                pulled.push_back(node);
-            sum += unit_or(points[i] - nodes[std::size_t(node)].position, glm::vec3(0, 1, 0)) + glm::vec3(0, 1e-9f, 0);
-        }
-        if (pulled.empty())
-            return;
-        std::sort(pulled.begin(), pulled.end());
-        for (const std::int32_t parent : pulled) {
-            const std::size_t at = std::size_t(parent);
-            Random random(p.seed, streams::of(streams::branch, nodes.size()));
-            const glm::vec3 course = unit_or(pull[at], random_direction(random));
-            pull[at] = glm::vec3(0.f);
-            const glm::vec3 direction =
-                unit_or(course + wander * random_direction(random) + glm::vec3(0, float(p.branch_up), 0), course);
-            const glm::vec3 position = nodes[at].position + step * direction;
-            // A node between two equal pulls would put out the same step for ever (Runions 2007, section 3).
-            if (std::min(glm::distance(position, last_child[at]), glm::distance(position, child_before[at])) <
-                0.5f * step) {
-                is_stuck[at] = 1;
-                continue;
-            }
-            child_before[at] = last_child[at];
-            last_child[at] = position;
-            nodes.push_back({position, parent, -1, true});
-            pull.emplace_back(0.f);
-            last_child.emplace_back(1e30f);
-            child_before.emplace_back(1e30f);
-            is_stuck.push_back(0);
-            field.add_node(position, std::int32_t(nodes.size()) - 1);
+/// At most so many steps set out from a node: the axis goes on, and two branches leave it.
+constexpr std::int32_t most_children = 3;
+
+class Colonisation {
+  public:
+    Colonisation(std::vector<WoodNode>& nodes, const std::vector<glm::vec3>& points, const SkyLight& light,
+                 const GrowthParameters& p, const ColonisationScale& scale)
+        : nodes_(nodes), points_(points), light_(light), p_(p), scale_(scale), field_(points, scale.influence),
+          straightness_(0.8f * float(p.apical_dominance)), wander_(std::sin(radians(p.branch_zigzag))),
+          held_back_(int(std::lround(8 * p.apical_dominance))) {
+        for (std::size_t n = 0; n < nodes.size(); ++n) {
+            const std::int32_t parent = nodes[n].parent;
+            buds_.push_back({parent < 0 ? glm::vec3(0, 1, 0)
+                                        : unit_or(nodes[n].position - nodes[std::size_t(parent)].position, {0, 1, 0})});
+            buds_.back().born = -held_back_;
+            if (parent >= 0)
+                ++buds_[std::size_t(parent)].children;
+            if (nodes[n].may_branch)
+                field_.add_node(nodes[n].position, std::int32_t(n));
         }
     }
+
+    void grow(Progress& progress) {
+        std::vector<std::uint32_t> alive(points_.size());
+        for (std::size_t i = 0; i < alive.size(); ++i)
+            alive[i] = std::uint32_t(i);
+        std::vector<std::int32_t> pulled;
+        for (int round = 0; round < 4096 && !alive.empty(); ++round) {
+            progress.throw_if_stopped();
+            // Points that are used up, or pull a node that can't follow, drop out.
+            std::erase_if(alive, [&](std::uint32_t i) {
+                const std::int32_t node = field_.nearest[i];
+                return field_.distance[i] < scale_.kill || (node >= 0 && buds_[std::size_t(node)].is_stuck);
+            });
+            pulled.clear();
+            for (const std::uint32_t i : alive) {
+                const std::int32_t node = field_.nearest[i];
+                if (node < 0)
+                    continue;
+                glm::vec3& sum = buds_[std::size_t(node)].pull;
+                if (sum == glm::vec3(0.f))
+                    pulled.push_back(node);
+                sum += unit_or(points_[i] - nodes_[std::size_t(node)].position, {0, 1, 0}) + glm::vec3(0, 1e-9f, 0);
+            }
+            if (pulled.empty())
+                return;
+            std::sort(pulled.begin(), pulled.end());
+            for (const std::int32_t node : pulled)
+                extend(std::size_t(node), round);
+        }
+    }
+
+  private:
+    void extend(std::size_t at, int round) {
+        const glm::vec3 pull = buds_[at].pull;
+        buds_[at].pull = glm::vec3(0.f);
+        const bool is_lateral = buds_[at].children > 0;
+        if (is_lateral && round - buds_[at].born < held_back_)
+            return; // the end of the axis is too near
+        Random random(p_.seed, streams::of(streams::branch, nodes_.size()));
+        const glm::vec3 along = buds_[at].direction, course = unit_or(pull, random_direction(random));
+        glm::vec3 direction = is_lateral ? leave_axis(along, course, random)
+                                         : unit_or((1 - straightness_) * course + straightness_ * along, course);
+        const glm::vec3 tropism =
+            glm::vec3(0, float(p_.branch_up), 0) +
+            (p_.branch_to_light > 0 ? float(p_.branch_to_light) * light_.direction(nodes_[at].position)
+                                    : glm::vec3(0.f));
+        direction =
+            unit_or(direction + wander_ * random_direction(random) + (is_lateral ? 0.3f : 1.f) * tropism, course);
+        const glm::vec3 position = nodes_[at].position + scale_.step * direction;
+        // A node between two equal pulls would put out the same step for ever (Runions 2007, section 3).
+        if (buds_[at].children >= most_children ||
+            std::min(glm::distance(position, buds_[at].last_child), glm::distance(position, buds_[at].child_before)) <
+                0.5f * scale_.step) {
+            buds_[at].is_stuck = true;
+            return;
+        }
+        buds_[at].child_before = buds_[at].last_child;
+        buds_[at].last_child = position;
+        ++buds_[at].children;
+        nodes_.push_back({position, std::int32_t(at), -1, true});
+        buds_.push_back({direction});
+        buds_.back().born = round;
+        field_.add_node(position, std::int32_t(nodes_.size()) - 1);
+    }
+
+    /// The first step of a branch: at the branching angle from the axis, on the side of its pull.
+    glm::vec3 leave_axis(const glm::vec3& along, const glm::vec3& course, Random& random) const {
+        const glm::vec3 out = unit_or(course - glm::dot(course, along) * along, any_perpendicular(along));
+        const float angle = radians(p_.branch_angle + p_.branch_angle_spread * double(random.uniform(-1.f, 1.f)));
+        return std::cos(angle) * along + std::sin(angle) * out;
+    }
+
+    std::vector<WoodNode>& nodes_;
+    const std::vector<glm::vec3>& points_;
+    const SkyLight& light_;
+    const GrowthParameters& p_;
+    ColonisationScale scale_;
+    AttractionField field_;
+    std::vector<Bud> buds_;
+    float straightness_, wander_;
+    int held_back_; ///< rounds that a bud waits before it grows out beside its axis
+};
+
+} // namespace
+
+void colonise(std::vector<WoodNode>& nodes, const std::vector<glm::vec3>& points, const SkyLight& light,
+              const GrowthParameters& parameters, const ColonisationScale& scale, Progress& progress) {
+    Colonisation(nodes, points, light, parameters, scale).grow(progress);
 }
 
 } // namespace kokage

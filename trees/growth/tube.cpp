@@ -66,7 +66,7 @@ std::vector<Point> centre_line(const std::vector<Branch::Node>& nodes) {
                     &d = points[std::min(i + 2, points.size() - 1)];
         const float length = glm::distance(b.position, c.position);
         const float spacing = (b.radius > 0.05f ? 2.5f : 5.f) * std::max(b.radius, 0.012f);
-        const int pieces = std::clamp(int(length / spacing), 1, 8);
+        const int pieces = std::clamp(int(length / spacing), 1, 64);
         for (int k = 0; k < (b.radius > 0.01f ? pieces : 1); ++k) {
             const float t = float(k) / float(pieces);
             line.push_back(

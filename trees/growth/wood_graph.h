@@ -3,6 +3,7 @@
 #include "common/services/progress.h"
 #include "trees/growth/crown.h"
 #include "trees/growth/parameters.h"
+#include "trees/growth/sky_light.h"
 
 #include <vector>
 
@@ -15,13 +16,26 @@ struct WoodNode {
     bool may_branch = true;   ///< false on the clean bole and the inner part of limbs
 };
 
-/// Trunk and main limbs, in steps of about step_m: knees, wandering, course towards the crown's outline.
-std::vector<WoodNode> grow_scaffold(const GrowthParameters& parameters, const Crown& crown, float step_m);
+/// Trunk and main limbs, in steps, and the courses that the limbs were to take.
+struct Scaffold {
+    std::vector<WoodNode> nodes;
+    std::vector<Limb> limbs;
+};
 
-/// Space colonisation (Runions, Lane and Prusinkiewicz 2007): every attraction point pulls the node nearest to it,
-/// within influence_m; pulled nodes grow a step towards the mean of their pulls; points closer than kill_m to wood are
-/// used up. So branches share out space (and light) among themselves. Appends to `nodes`.
-void colonise(std::vector<WoodNode>& nodes, const Crown::Attractors& attractors, const GrowthParameters& parameters,
-              float step_m, float influence_m, float kill_m, Progress& progress);
+/// Trunk and main limbs in steps of about step_m: whorls, divergence, bends, knees, as far as the crown's outline.
+Scaffold grow_scaffold(const GrowthParameters& parameters, const Crown& crown, float step_m);
+
+/// How far things reach while the crown is filled, in metres.
+struct ColonisationScale {
+    float step, influence, kill;
+};
+
+/// Space colonisation (Runions, Lane and Prusinkiewicz 2007) by buds (Palubicki et al. 2009): every attraction point
+/// pulls the node nearest to it within reach; pulled nodes grow a step towards the mean of their pulls; points closer
+/// to wood than `kill` are used up. So branches share out space (and light) among themselves. Where a node bears a
+/// second branch, that leaves at the species' branching angle; apical dominance holds it back and keeps axes straight;
+/// gravity and light bend the course. Appends to `nodes`.
+void colonise(std::vector<WoodNode>& nodes, const std::vector<glm::vec3>& points, const SkyLight& light,
+              const GrowthParameters& parameters, const ColonisationScale& scale, Progress& progress);
 
 } // namespace kokage
