@@ -3,6 +3,7 @@
 #include "common/services/stopwatch.h"
 #include "trees/growth/bark.h"
 #include "trees/growth/crown.h"
+#include "trees/growth/leaf_shape.h"
 #include "trees/growth/leaves.h"
 #include "trees/growth/materials.h"
 #include "trees/growth/skeleton.h"

@@ -246,11 +246,23 @@ class SkeletonBuilder {
             const std::uint64_t key = (std::uint64_t(node) << 8) + k;
             Random random(p_.seed, streams::of(streams::shoot, key));
             const float angle = radians(p_.shoot_angle) * random.uniform(0.6f, 1.4f);
-            const glm::vec3 out =
-                tilted(along, angle, 2.39996323f * float(k) + 1.3f * float(node) + random.uniform(-0.5f, 0.5f));
+            const float azimuth = shoot_azimuth(along, node, k) + random.uniform(-0.5f, 0.5f);
+            const glm::vec3 out = tilted(along, angle, azimuth);
             side_shoots_.push_back(
                 {branch, order + 1, from, unit_or(out + glm::vec3(0, 2 * float(p_.shoot_up), 0), out), key});
         }
+    }
+
+    /// Where around its twig the k-th shoot of a node stands: as buds in leaves' axils do.
+    float shoot_azimuth(const glm::vec3& along, std::int32_t node, std::uint32_t k) const {
+        if (p_.leaf_arrangement == LeafArrangement::distichous) { // left and right, as tilted() counts its angles
+            const glm::vec3 left = unit_or(glm::cross(glm::vec3(0, 1, 0), along), {1, 0, 0});
+            const glm::vec3 x = any_perpendicular(along), y = glm::cross(along, x);
+            return std::atan2(glm::dot(left, y), glm::dot(left, x)) + kPi * float(k + std::uint32_t(node));
+        }
+        if (p_.leaf_arrangement == LeafArrangement::opposite)
+            return kPi * float(k) + 0.5f * kPi * float(std::uint32_t(node) + k / 2);
+        return 2.39996323f * float(k) + 1.3f * float(node);
     }
 
     /// Appends the nodes of a shoot that runs from the last node of `branch`, bending upwards a little, or hanging.

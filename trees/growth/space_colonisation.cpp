@@ -163,6 +163,14 @@ class Colonisation {
             buds_[at].is_stuck = true;
             return;
         }
+        add_step(at, direction, round);
+        // Buds in pairs put out branches in pairs; the one that finds no room stays a short shoot.
+        if (is_lateral && p_.leaf_arrangement == LeafArrangement::opposite)
+            add_step(at, unit_or(2 * glm::dot(direction, along) * along - direction, along), round);
+    }
+
+    void add_step(std::size_t at, const glm::vec3& direction, int round) {
+        const glm::vec3 position = nodes_[at].position + scale_.step * direction;
         buds_[at].child_before = buds_[at].last_child;
         buds_[at].last_child = position;
         ++buds_[at].children;
@@ -174,7 +182,11 @@ class Colonisation {
 
     /// The first step of a branch: at the branching angle from the axis, on the side of its pull.
     glm::vec3 leave_axis(const glm::vec3& along, const glm::vec3& course, Random& random) const {
-        const glm::vec3 out = unit_or(course - glm::dot(course, along) * along, any_perpendicular(along));
+        glm::vec3 out = unit_or(course - glm::dot(course, along) * along, any_perpendicular(along));
+        if (p_.leaf_arrangement == LeafArrangement::distichous) { // buds left and right: branches lie in level sprays
+            const glm::vec3 left = unit_or(glm::cross(glm::vec3(0, 1, 0), along), out);
+            out = unit_or((glm::dot(out, left) < 0 ? -1.f : 1.f) * left + 0.4f * out, out);
+        }
         const float angle = radians(p_.branch_angle + p_.branch_angle_spread * double(random.uniform(-1.f, 1.f)));
         return std::cos(angle) * along + std::sin(angle) * out;
     }

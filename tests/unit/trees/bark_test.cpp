@@ -95,8 +95,9 @@ TEST(Bark, PatchesAreConsecutiveAndSmall) {
     std::vector<double> areas(tree.bark_patch_count, 0.0);
     for (std::size_t t = 0; t < bark.triangles.size(); ++t)
         areas[bark.triangle_patch[t]] += triangle_area(bark, bark.triangles[t]);
-    std::nth_element(areas.begin(), areas.begin() + 1, areas.end(), std::greater<>());
-    EXPECT_LT(areas[1], 0.06) << "all but the foot of the trunk, which stands on the ground";
+    std::sort(areas.begin(), areas.end(), std::greater<>());
+    EXPECT_LT(areas[1], 0.15) << "all but the foot of the trunk, which stands on the ground";
+    EXPECT_LT(areas[8], 0.06) << "all but the feet of main limbs, which are hidden in the trunk";
 }
 
 /// Largest over smallest scale of the texture on a triangle.
