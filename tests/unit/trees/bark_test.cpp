@@ -97,7 +97,7 @@ TEST(Bark, PatchesAreConsecutiveAndSmall) {
         areas[bark.triangle_patch[t]] += triangle_area(bark, bark.triangles[t]);
     std::sort(areas.begin(), areas.end(), std::greater<>());
     EXPECT_LT(areas[1], 0.15) << "all but the foot of the trunk, which stands on the ground";
-    EXPECT_LT(areas[8], 0.06) << "all but the feet of main limbs, which are hidden in the trunk";
+    EXPECT_LT(areas[16], 0.06) << "all but the feet of main limbs, which are hidden in the trunk";
 }
 
 /// Largest over smallest scale of the texture on a triangle.
