@@ -1,0 +1,42 @@
+#pragma once
+// MTL files. Private to common/obj.
+#include "common/scene/mesh_scene.h"
+
+#include <filesystem>
+
+namespace kokage {
+
+/// Materials by name, read from the MTL files that an OBJ names.
+class ObjMaterials {
+  public:
+    /// `path`: of the OBJ, for messages.
+    ObjMaterials(std::filesystem::path path, std::vector<std::string>& notes);
+
+    /// Reads the file or files that a `mtllib` line names; one that is not there is noted.
+    void read_library(const std::string& names);
+
+    /// The index of a material in materials(); one that no file describes is made up, and noted. "" is the material of
+    /// faces before any `usemtl`.
+    int index_of(const std::string& name);
+
+    const std::vector<SceneMaterial>& materials() const { return materials_; }
+    /// For uv of a material: uv' = offset + scale * uv, before v is turned.
+    struct TextureOptions {
+        glm::vec2 offset{0.f}, scale{1.f};
+    };
+    const TextureOptions& options(int material) const { return options_[std::size_t(material)]; }
+
+  private:
+    void read_file(const std::filesystem::path& file);
+
+    std::filesystem::path path_;
+    std::vector<std::string>& notes_;
+    std::vector<SceneMaterial> materials_;
+    std::vector<TextureOptions> options_;
+    std::map<std::string, int> by_name_;
+    std::map<std::string, Image> images_; ///< by path
+    std::uint64_t pixels_ = 0;
+    friend class MaterialTextures;
+};
+
+} // namespace kokage
