@@ -7,6 +7,7 @@
 #include "trees/bark_skeleton.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
+#include "trees/stand_in_colors.h"
 #include "trees/surface_patches.h"
 
 #include <algorithm>
@@ -192,11 +193,13 @@ TreeMaterial tree_material(const GltfMaterial& source, const glm::vec3& color_fa
 }
 
 Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options, Progress& progress) {
-    GltfScene scene = flatten(document, std::nullopt, progress);
+    return tree_from_scene(flatten(document, std::nullopt, progress), document.path(), options, progress);
+}
+
+Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions& options, Progress& progress) {
     Tree tree;
-    const std::filesystem::path path = document.path();
-    tree.name = path.stem().string();
-    tree.source = document.path();
+    tree.name = std::filesystem::path(path).stem().string();
+    tree.source = path;
     tree.origin = scene.origin * options.scale;
     tree.notes = scene.notes;
     if (options.scale != 1)
@@ -205,7 +208,8 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
                 position = glm::vec3(glm::dvec3(position) * options.scale);
 
     progress.begin("finding foliage", 1);
-    const FoundFoliage found = find_foliage(scene, options.foliage_materials, document.path());
+    const FoundFoliage found = find_foliage(scene, options.foliage_materials, path);
+    stand_in_for_lost_colors(scene, found.kinds);
     tree.notes.insert(tree.notes.end(), found.notes.begin(), found.notes.end());
 
     // A part for each material and kind; vertex colours make a material of their own, as a mean.

@@ -1,11 +1,14 @@
 #include "trees/read_tree.h"
 
+#include "common/obj/obj_scene.h"
 #include "common/services/error.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
 #include "trees/foreign_tree.h"
 #include "trees/tree_extras.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <tiny_gltf.h>
 
@@ -35,6 +38,13 @@ bool holds_light(const GltfDocument& document) {
     return false;
 }
 
+bool is_obj(const std::filesystem::path& path) {
+    std::string extension = path.extension().string();
+    std::transform(extension.begin(), extension.end(), extension.begin(),
+                   [](unsigned char c) { return char(std::tolower(c)); });
+    return extension == ".obj";
+}
+
 } // namespace
 
 Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Progress& progress) {
@@ -43,6 +53,8 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
     if (!(options.leaf_size >= 0) || !std::isfinite(options.leaf_size))
         throw InputError("the leaf size is " + std::to_string(options.leaf_size) +
                          " m; it must be 0 (found by itself) or above");
+    if (is_obj(path))
+        return tree_from_scene(read_obj_scene(path, progress), path.string(), options, progress);
     const GltfDocument document = GltfDocument::read(path, progress);
     const bool shaded = holds_light(document);
     std::string why;

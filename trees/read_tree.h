@@ -1,6 +1,6 @@
 #pragma once
-// Trees from glTF files: our own, which reload exactly, and anybody's, in which foliage, leaves and branching are
-// found.
+// Trees from glTF and OBJ files: our own, which reload exactly, and anybody's, in which foliage, leaves and branching
+// are found.
 #include "common/services/progress.h"
 #include "trees/tree.h"
 
@@ -18,8 +18,8 @@ struct ReadOptions {
     double scale = 1;
 };
 
-/// Reads a .glb or .gltf. A file written by write_tree() gives back the same tree, bit for bit (with `options` at their
-/// defaults); in any other, as Tree::notes tells:
+/// Reads a .glb, .gltf or .obj. A file written by write_tree() gives back the same tree, bit for bit (with `options` at
+/// their defaults); in any other, as Tree::notes tells:
 /// - foliage is what the user says, else what has alpha mask or blend or transmission, else what is named so, else what
 /// is green;
 /// - a leaf is what is connected, split where normals turn by more than 30 degrees or it is larger than 5 % of the

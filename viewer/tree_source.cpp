@@ -94,7 +94,7 @@ void check_tree_source(const TreeSource& source) {
         throw InputError("--scale: it must be above 0");
     std::error_code ignored;
     if (fs::is_directory(source.name, ignored))
-        throw InputError("'" + source.name + "' is a folder; give a tree's file (.glb, .gltf)");
+        throw InputError("'" + source.name + "' is a folder; give a tree's file (.glb, .gltf, .obj)");
     if (!fs::exists(source.name, ignored)) {
         std::string known;
         for (const Species& species : all_species())

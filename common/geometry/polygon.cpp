@@ -55,7 +55,7 @@ std::vector<glm::uvec3> triangulate_polygon(std::span<const glm::dvec3> corners)
     std::vector<std::uint32_t> ring(corners.size());
     for (std::size_t i = 0; i < ring.size(); ++i)
         ring[i] = std::uint32_t(i);
-    std::size_t at = 0, tried = 0;
+    std::size_t at = 1, tried = 0; // so that a convex quad is cut from its first corner, as most programs do
     while (ring.size() > 3) {
         const std::size_t n = ring.size();
         // Without an ear the polygon crosses itself or is flat: any corner will do.

@@ -135,14 +135,10 @@ class MaterialTextures {
     /// damaged or too large.
     const Image* find(const std::string& name, PixelMeaning meaning, const std::string& place, std::string& why) {
         fs::path file;
-        for (const std::string& tried : {name, own_name(name)}) {
-            try {
-                file = find_named_file(folder_, tried, NameReach::relative, "");
-                break;
-            } catch (const InputError&) {
-                // Named by another machine's path: looked for by its own name, then said.
-            }
-        }
+        // Named by another machine's path: looked for by its own name.
+        for (const std::string& tried : {name, own_name(name)})
+            if (file.empty())
+                file = look_for_named_file(folder_, tried, NameReach::relative);
         if (file.empty()) {
             why = "is not there (put it beside the file)";
             return nullptr;
@@ -183,16 +179,11 @@ void ObjMaterials::read_library(const std::string& names) {
         if (word != tried.front())
             tried.push_back(word);
     bool found = false;
-    for (std::size_t i = 0; i < tried.size() && !(found && i == 1); ++i) {
+    for (std::size_t i = 0; i < tried.size(); ++i) {
         fs::path file;
-        for (const std::string& name : {tried[i], own_name(tried[i])}) {
-            try {
-                file = find_named_file(folder, name, NameReach::own_folder, "");
-                break;
-            } catch (const InputError&) {
-                // Another machine's path, or one of several words: tried otherwise, then said.
-            }
-        }
+        for (const std::string& name : {tried[i], own_name(tried[i])})
+            if (file.empty())
+                file = look_for_named_file(folder, name, NameReach::own_folder);
         if (file.empty())
             continue;
         read_file(file);

@@ -83,30 +83,55 @@ bool stays_inside(const fs::path& name) {
 
 } // namespace
 
-fs::path find_named_file(const fs::path& folder, const std::string& name, NameReach reach, const std::string& owner) {
-    const auto fail = [&](const std::string& why) {
-        throw InputError(owner + ": names the file '" + shown_name(name) + "'" + why);
-    };
+namespace {
+
+enum class Fault { none, no_name, absolute, outside, missing };
+
+fs::path search(const fs::path& folder, const std::string& name, NameReach reach, Fault& fault) {
+    fault = Fault::no_name;
     if (name.empty() || name.find('\0') != std::string::npos)
-        fail(", which is no name");
+        return {};
     std::string slashes = name;
     std::replace(slashes.begin(), slashes.end(), '\\', '/');
-    bool outside = false;
+    fault = Fault::missing;
     for (const std::string& tried : {percent_decoded(name), name, percent_decoded(slashes)}) {
-        if (has_scheme(tried) || fs::path(tried).is_absolute())
-            fail(", which is not a name relative to its own folder: put that file beside it and name it so");
+        if (has_scheme(tried) || fs::path(tried).is_absolute()) {
+            fault = Fault::absolute;
+            return {};
+        }
         if (reach == NameReach::own_folder && !stays_inside(tried)) {
-            outside = true;
+            fault = Fault::outside;
             continue;
         }
         std::error_code ignored;
         const fs::path path = folder / tried;
-        if (fs::is_regular_file(path, ignored))
+        if (fs::is_regular_file(path, ignored)) {
+            fault = Fault::none;
             return path;
+        }
     }
-    fail(outside ? ", which lies outside of its folder: put that file beside it and name it so"
-                 : ", which is not there: put it beside the file");
     return {};
+}
+
+} // namespace
+
+fs::path look_for_named_file(const fs::path& folder, const std::string& name, NameReach reach) {
+    Fault ignored;
+    return search(folder, name, reach, ignored);
+}
+
+fs::path find_named_file(const fs::path& folder, const std::string& name, NameReach reach, const std::string& owner) {
+    Fault fault;
+    const fs::path path = search(folder, name, reach, fault);
+    if (fault == Fault::none)
+        return path;
+    throw InputError(owner + ": names the file '" + shown_name(name) + "'" +
+                     (fault == Fault::no_name ? ", which is no name"
+                      : fault == Fault::absolute
+                          ? ", which is not a name relative to its own folder: put that file beside it and name it so"
+                      : fault == Fault::outside
+                          ? ", which lies outside of its folder: put that file beside it and name it so"
+                          : ", which is not there: put it beside the file"));
 }
 
 } // namespace kokage

@@ -21,6 +21,9 @@ enum class NameReach { own_folder, relative };
 /// absolute, leads farther than `reach`, is an address on the net, or names no file: each says how to mend it.
 std::filesystem::path find_named_file(const std::filesystem::path& folder, const std::string& name, NameReach reach,
                                       const std::string& owner);
+/// The same; an empty path where that throws.
+std::filesystem::path look_for_named_file(const std::filesystem::path& folder, const std::string& name,
+                                          NameReach reach);
 
 /// Percent escapes decoded; what is no valid escape stays as it is.
 std::string percent_decoded(const std::string& text);

@@ -29,6 +29,7 @@ inline std::string base64(const std::vector<unsigned char>& bytes) {
 struct GltfText {
     nlohmann::json json = {{"asset", {{"version", "2.0"}}}};
     std::vector<unsigned char> bytes;
+    std::vector<nlohmann::json> more_buffers; ///< listed after the one that holds `bytes`
 
     template <typename Value>
     int view(const std::vector<Value>& values) {
@@ -71,13 +72,40 @@ struct GltfText {
     }
 
     std::string text() const {
-        nlohmann::json whole = json;
-        if (!bytes.empty() && !whole.contains("buffers"))
-            whole["buffers"] = {
-                {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}}};
-        return whole.dump();
+        return with_buffer(
+                   {{"byteLength", bytes.size()}, {"uri", "data:application/octet-stream;base64," + base64(bytes)}})
+            .dump();
+    }
+    /// The file with its bytes in another, which a URI names.
+    std::string text_beside(const std::string& uri) const {
+        return with_buffer({{"byteLength", bytes.size()}, {"uri", uri}}).dump();
+    }
+    std::string glb() const {
+        std::string json_chunk = with_buffer({{"byteLength", bytes.size()}}).dump();
+        json_chunk.resize((json_chunk.size() + 3) / 4 * 4, ' ');
+        std::string binary(bytes.begin(), bytes.end());
+        binary.resize((binary.size() + 3) / 4 * 4, '\0');
+        const auto number = [](std::size_t value) {
+            const auto small = std::uint32_t(value);
+            std::string four(4, '\0');
+            std::memcpy(four.data(), &small, 4);
+            return four;
+        };
+        return "glTF" + number(2) + number(28 + json_chunk.size() + binary.size()) + number(json_chunk.size()) +
+               "JSON" + json_chunk + number(binary.size()) + std::string("BIN\0", 4) + binary;
     }
     void write(const std::filesystem::path& path) const { std::ofstream(path, std::ios::binary) << text(); }
+
+    /// The JSON with its buffers listed, unless it lists its own.
+    nlohmann::json with_buffer(const nlohmann::json& buffer) const {
+        nlohmann::json whole = json;
+        if (whole.contains("buffers") || (bytes.empty() && more_buffers.empty()))
+            return whole;
+        whole["buffers"] = {buffer};
+        for (const nlohmann::json& more : more_buffers)
+            whole["buffers"].push_back(more);
+        return whole;
+    }
 
     /// A right triangle in the xy plane, front towards +Z, corners (0,0,0), (1,0,0), (0,1,0).
     static GltfText triangle() {
