@@ -62,7 +62,7 @@ TEST(Polygon, WhatHasNoAreaOrCrossesItselfStillGivesTriangles) {
     const std::vector<glm::uvec3> quad =
         triangulate_polygon(std::vector<glm::dvec3>{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}});
     EXPECT_EQ(quad[0], glm::uvec3(0, 1, 2));
-    EXPECT_EQ(quad[1], glm::uvec3(2, 3, 0));
+    EXPECT_EQ(quad[1], glm::uvec3(0, 2, 3));
 }
 
 } // namespace
