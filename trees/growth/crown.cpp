@@ -115,7 +115,7 @@ void Crown::draw_in_layers(std::vector<glm::vec3>& points, std::size_t until, co
                            Random& random) const {
     std::vector<float> area_before{0.f};
     for (const Limb& limb : limbs)
-        area_before.push_back(area_before.back() + limb.length_m * limb.length_m);
+        area_before.push_back(area_before.back() + std::pow(limb.length_m, 1.6f)); // between its length and its area
     if (area_before.back() <= 0)
         return;
     for (std::size_t tries = 400 * (until + 100); points.size() < until && tries > 0; --tries) {
