@@ -47,8 +47,8 @@ struct BarkPiece {
 class TubeBuilder {
   public:
     TubeBuilder(const Tube& tube, std::uint64_t index, const GrowthParameters& p)
-        : rings_(tube.rings), joint_(tube.joint), is_trunk_(tube.joint.radius_m <= 0), flare_(float(p.root_flare)),
-          tile_(float(p.bark_tile)), random_(p.seed, streams::of(streams::bark, index)) {
+        : rings_(tube.rings), joint_(tube.joint), is_trunk_(tube.joint.radius_m <= 0), index_(std::uint32_t(index)),
+          flare_(float(p.root_flare)), tile_(float(p.bark_tile)), random_(p.seed, streams::of(streams::bark, index)) {
         phase_ = random_.uniform(0.f, 2 * kPi);
         add_vertices();
         place_texture();
@@ -122,7 +122,10 @@ class TubeBuilder {
         const float radius = 0.93f * joint_.radius_m, a = std::max(glm::dot(d, d), 0.04f), b = glm::dot(q, d),
                     c = glm::dot(q, q) - radius * radius;
         const float t = (-b + std::sqrt(std::max(0.f, b * b - a * c))) / a;
-        return point + std::clamp(t, -1.5f * joint_.radius_m, 0.8f * rings_[1].radius_m) * along;
+        // Never past the rings before and behind.
+        return point + std::clamp(t, -0.8f * glm::dot(rings_[1].centre - rings_[0].centre, along),
+                                  0.8f * glm::dot(rings_[2].centre - rings_[1].centre, along)) *
+                           along;
     }
 
     /// Where a branch comes out of its parent, both are lit alike: no crease shows.
@@ -230,7 +233,7 @@ class TubeBuilder {
             if (i == 0 || key(faces_[i]) != key(faces_[i - 1])) {
                 ++piece.patches;
                 const Ring& ring = rings_[faces_[i].segment];
-                piece.places.push_back({ring.radius_m, ring.centre.y, is_trunk_});
+                piece.places.push_back({ring.radius_m, ring.centre.y, is_trunk_, index_});
             }
             piece.part.triangle_patch.push_back(piece.patches - 1);
         }
@@ -239,6 +242,7 @@ class TubeBuilder {
     const std::vector<Ring>& rings_;
     const Joint& joint_;
     bool is_trunk_;
+    std::uint32_t index_;
     float flare_, tile_, phase_ = 0;
     int tiles_ = 1;
     Random random_;

@@ -10,6 +10,7 @@ struct BarkPlace {
     float radius_m = 0; ///< of the wood
     float height_m = 0;
     bool on_trunk = false;
+    std::uint32_t branch = 0; ///< in the skeleton
 };
 
 /// One generalised cylinder a branch, in parallel-transport frames, closed at both ends: its foot lies inside the

@@ -179,9 +179,10 @@ class SkeletonBuilder {
                 std::clamp(1 - radius(std::int32_t(i)) / float(p_.shoot_radius) / thin_below, 0.f, 1.f);
             thin_m[i] = thin_m[parent] + thinness * length;
             const float angle = radians(p_.twig_sag) * thin_m[i] / (0.1f * height_m_);
-            bent[i] = bent[parent] + length * turned_down(unit_or(step, {0, 1, 0}), angle);
-            if (step.y < 0 || angle > 0)
-                bent[i].y = std::max(bent[i].y, std::min(nodes_[i].position.y, lowest_share * height_m_));
+            glm::vec3 direction = turned_down(unit_or(step, {0, 1, 0}), angle);
+            if (angle > 0 && bent[parent].y + length * direction.y < lowest_share * height_m_) // along the ground
+                direction = unit_or({direction.x, 0, direction.z}, {1, 0, 0});
+            bent[i] = bent[parent] + length * direction;
         }
         for (std::size_t i = 0; i < nodes_.size(); ++i)
             nodes_[i].position = bent[i];

@@ -3,6 +3,7 @@
 #include "trees/growth/directions.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace kokage {
@@ -139,16 +140,46 @@ float length_of(const std::vector<Point>& line) {
     return length;
 }
 
-/// Replaces the start of a line by the three rings of a collar. Returns false if the branch is too short to have one.
+/// A collar's rings are so much wider than the branch: its foot inside the parent, where it comes out, and beyond.
+constexpr std::array<float, 3> collar_widening = {0.6f, 1.65f, 1.22f};
+
+/// Takes points away where the line bends so sharply, or its points lie so close, that their rings would cross: a ring
+/// stands in the middle plane of its bend, and reaches radius x tan(half the bend) along the line on the inner side.
+void remove_crossings(std::vector<Point>& line, std::size_t first) {
+    const auto reach = [&](std::size_t i) {
+        if (i == 0 || i + 1 >= line.size())
+            return 0.f;
+        const glm::vec3 before = unit_or(line[i].position - line[i - 1].position, {0, 1, 0}),
+                        after = unit_or(line[i + 1].position - line[i].position, {0, 1, 0});
+        if (glm::dot(before, after) < -0.17f) // more than 100 degrees: a hairpin
+            return 1e30f;
+        return line[i].radius * glm::length(before - after) / glm::length(before + after);
+    };
+    for (std::size_t i = first; i < line.size() && line.size() > 3;) {
+        const float before = reach(i - 1), here = reach(i);
+        const std::size_t sharper = i + 1 == line.size() || (before > here && i > first) ? i - 1 : i;
+        if (1.2f * (before + here) <= glm::distance(line[i].position, line[i - 1].position) || sharper < first) {
+            ++i;
+            continue;
+        }
+        line.erase(line.begin() + std::ptrdiff_t(sharper));
+        i = std::max(first, i - 1);
+    }
+}
+
+/// Replaces the start of a line by the rings of a collar. Returns false if the branch is too short to have one.
 bool add_collar(std::vector<Point>& line, const Joint& joint) {
     const glm::vec3 out = unit_or(line[1].position - line[0].position, {0, 1, 0});
-    const float sine = glm::length(glm::cross(out, joint.axis)), radius = line[0].radius;
-    const float surface = joint.radius_m / std::max(sine, 0.4f); // where the centre line leaves the parent
-    if (length_of(line) < surface + 3 * radius)
+    const float sine = std::max(glm::length(glm::cross(out, joint.axis)), 0.4f), radius = line[0].radius;
+    const float surface = joint.radius_m / sine; // where the centre line leaves the parent
+    // In the crotch the ring that lies on the parent reaches so much farther along the branch.
+    const float crotch = collar_widening[1] * radius * std::sqrt(1 - std::min(1.f, sine * sine)) / sine;
+    const float second = surface + std::max(0.9f * radius, crotch + 0.4f * radius), third = second + 1.3f * radius;
+    if (length_of(line) < third + 0.8f * radius)
         return false;
-    remove_between(line, 0, surface + 1.9f * radius);
-    insert_at(line, surface + 2.2f * radius);
-    insert_at(line, surface + 0.9f * radius);
+    remove_between(line, 0, third - 0.3f * radius);
+    insert_at(line, third);
+    insert_at(line, second);
     insert_at(line, surface);
     return line.size() > 4;
 }
@@ -170,11 +201,11 @@ std::vector<Ring> place_rings(const Branch& branch, const Joint& joint, const Gr
         for (const float share : {0.35f, 0.9f, 1.8f, 3.2f})
             insert_at(line, share * radius);
     const bool has_collar = !is_trunk && radius > 0.006f && add_collar(line, joint);
+    remove_crossings(line, has_collar ? 4 : 1);
     std::vector<Ring> rings = rings_along(line, is_trunk);
     if (has_collar) {
-        static constexpr float widening[] = {0.6f, 1.65f, 1.22f};
         for (std::size_t i = 0; i < 3; ++i)
-            rings[i].radius_m *= std::min(widening[i], std::max(1.f, 0.9f * joint.radius_m / rings[i].radius_m));
+            rings[i].radius_m *= std::min(collar_widening[i], std::max(1.f, 0.9f * joint.radius_m / rings[i].radius_m));
         rings[0].radius_m = std::min(rings[0].radius_m, 0.6f * joint.radius_m);
         rings[1].on_parent = true;
     }
