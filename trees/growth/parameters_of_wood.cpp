@@ -26,7 +26,7 @@ std::vector<ParameterRow> crown_rows() {
         "crown",
         {real("leaf_area_index", &P::leaf_area_index, "m2 per m2", 0.2, 60,
               "Leaf area over the crown's ground projection; sets the crown's width for a number of leaves."),
-         real("height_to_width", &P::height_to_width, "", 0.3, 6, "Height of the tree over the width of its crown."),
+         real("height_to_width", &P::height_to_width, "", 0.3, 12, "Height of the tree over the width of its crown."),
          real("crown_base", &P::crown_base, "of the height", 0, 0.9, "Where the crown begins."),
          real("crown_widest", &P::crown_widest, "of the crown's depth", 0.02, 0.98,
               "Where the crown is widest, from its base."),
