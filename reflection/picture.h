@@ -70,24 +70,27 @@ Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
 /// stands overhead.
 float photographers_azimuth(const Environment& environment);
 
-/// Linear radiance picture, 3 channels, finite. The ground is lit per pixel: lights shadow-tested, sky and light from
-/// the tree gathered over the hemisphere at the nodes of a grid that is finer near the tree, and interpolated. The same
-/// bits for any number of threads. Throws InputError if sizes disagree, Stopped if the user stopped.
+/// Linear radiance picture, 3 channels, finite. `subject` (null = not wanted) gets 1 channel as large: the share of
+/// each pixel's rays that met the scene's surfaces, and neither ground nor surroundings. The ground is lit per pixel:
+/// lights shadow-tested, sky and light from the tree gathered over the hemisphere at the nodes of a grid that is finer
+/// near the tree, and interpolated. The same bits for any number of threads. Throws InputError if sizes disagree,
+/// Stopped if the user stopped.
 Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                     const Camera& camera, const PictureOptions& options, Progress& progress);
+                     const Camera& camera, const PictureOptions& options, Progress& progress, Image* subject = nullptr);
 
 /// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees. 0 for a black
 /// picture. Metered like a camera, the middle of the picture counting most: the geometric mean of luminance goes to
 /// middle grey (0.18) plus a quarter of a stop, because crowns are darker than a grey card. Where that would take the
 /// level that 93 % stay below beyond 1.1, only 0.35 of the excess (in stops) is given, so that skies keep their colour
 /// and trees against the light don't become silhouettes. What is brighter than that level, or 4.5 stops darker
-/// (background, deep shade), is not in the mean.
-float automatic_exposure_stops(const Image& radiance);
+/// (background, deep shade), is not in the mean. Pixels of the `subject` (as render_picture gives it; may be null) have
+/// at least half of the say in the mean, so that a slender tree is not lost against the sky.
+float automatic_exposure_stops(const Image& radiance, const Image* subject = nullptr);
 
 /// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the
 /// filmic curve of Uchimura ("HDR theory and practice", CEDEC 2017: P = 1, a = 1, m = 0.22, l = 0.4, c = 1.33, b = 0)
 /// on every channel, then the sRGB curve. Any input gives finite output: NaN and negative values are black, infinity is
 /// white.
-Image tone_map(const Image& radiance, std::optional<float> exposure_stops);
+Image tone_map(const Image& radiance, std::optional<float> exposure_stops, const Image* subject = nullptr);
 
 } // namespace kokage

@@ -61,13 +61,16 @@ struct Renderer {
     const SurfaceShading& surfaces;
     const GroundShading& ground;
 
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
-                       ShadingScratch& scratch) const {
+    /// `met` counts rays that met a surface.
+    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample, ShadingScratch& scratch,
+                       std::uint32_t& met) const {
         RayHit hit;
         const float ground_distance = ground.distance(origin, direction);
         const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
-        if (found && hit.distance <= ground_distance)
+        if (found && hit.distance <= ground_distance) {
+            ++met;
             return surfaces.radiance(origin, direction, hit, sample, scratch);
+        }
         if (ground_distance < kInfinity)
             return ground.radiance(origin, direction, ground_distance, sample, scratch);
         return backdrop.seen(direction);
@@ -81,7 +84,7 @@ std::uint32_t pattern_of(std::uint64_t seed, std::uint64_t pixel, std::uint64_t 
 } // namespace
 
 Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                     const Camera& camera, const PictureOptions& options, Progress& progress) {
+                     const Camera& camera, const PictureOptions& options, Progress& progress, Image* subject) {
     check(options);
     if (!scene.patches)
         throw InputError("picture: there is no scene of patches");
@@ -95,6 +98,8 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
     const Renderer renderer{queries, backdrop, surfaces, ground};
 
     Image picture(options.width, options.height, 3);
+    if (subject)
+        *subject = Image(options.width, options.height, 1);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("rendering the picture", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 2, [&](std::size_t begin, std::size_t end) {
@@ -106,17 +111,20 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
                 const std::uint32_t film_pattern = pattern_of(options.seed, pixel, 1);
                 const std::uint32_t light_pattern = pattern_of(options.seed, pixel, 2);
                 glm::dvec3 sum(0.0);
+                std::uint32_t met = 0;
                 for (std::uint32_t s = 0; s < samples; ++s) {
                     const glm::vec2 u = multi_jittered(s, samples, film_pattern);
                     const glm::vec3 direction = frame.direction(float(x) + 0.5f + pixel_filter_offset(u.x),
                                                                 float(y) + 0.5f + pixel_filter_offset(u.y));
                     const glm::dvec3 seen =
-                        renderer.radiance(frame.position, direction, {s, samples, light_pattern}, scratch);
+                        renderer.radiance(frame.position, direction, {s, samples, light_pattern}, scratch, met);
                     for (std::size_t c = 0; c < 3; ++c) // what overflowed on the way is as bright as a picture can hold
                         sum[c] += seen[c] < kLargestRadiance ? std::max(seen[c], 0.0) : kLargestRadiance;
                 }
                 for (int c = 0; c < 3; ++c)
                     picture.at(x, y)[c] = float(sum[std::size_t(c)] / samples);
+                if (subject)
+                    subject->at(x, y)[0] = float(met) / float(samples);
             }
         progress.advance(end - begin);
     });

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <tuple>
 
 namespace kokage {
 namespace {
@@ -11,6 +12,7 @@ namespace {
 constexpr float kMiddleGrey = 0.18f;
 constexpr float kCompensation =
     1.2f; ///< a crown is darker than a grey card: photographers open a quarter of a stop for it
+constexpr double kSubjectShare = 0.5; ///< of the metering that what is shown has at least, however slender it is
 constexpr float kBrightShare = 0.93f; ///< of the metered picture that must stay below …
 constexpr float kHighlight = 1.1f;    ///< … what the curve shows as a light grey of 0.93
 constexpr double kYield =
@@ -47,13 +49,28 @@ float srgb(float linear) {
 
 struct Metered {
     float luminance;
-    float weight;
+    float weight;  ///< of its place in the picture
+    float subject; ///< share of the pixel that shows the subject
 };
+
+/// By how much pixels of the subject count more than their place in the picture says.
+double subject_gain(const std::vector<Metered>& lit) {
+    double total = 0, subject = 0;
+    for (const Metered& pixel : lit) {
+        total += double(pixel.weight);
+        subject += double(pixel.weight * pixel.subject);
+    }
+    if (!(subject > 1e-4 * total) || subject >= kSubjectShare * total)
+        return 1;
+    return kSubjectShare / (1 - kSubjectShare) * (total - subject) / subject;
+}
 
 } // namespace
 
-float automatic_exposure_stops(const Image& radiance) {
+float automatic_exposure_stops(const Image& radiance, const Image* subject) {
     check_channels(radiance);
+    if (subject && (subject->width != radiance.width || subject->height != radiance.height))
+        throw InputError("exposure: the picture and the mask of its subject differ in size");
     std::vector<Metered> lit;
     double total = 0;
     for (int y = 0; y < radiance.height; ++y)
@@ -65,13 +82,13 @@ float automatic_exposure_stops(const Image& radiance) {
             const float dx = 2 * (float(x) + 0.5f) / float(radiance.width) - 1,
                         dy = 2 * (float(y) + 0.5f) / float(radiance.height) - 1;
             const float weight = 0.15f + std::exp(-2.5f * (dx * dx + dy * dy));
-            lit.push_back({value, weight});
+            lit.push_back({value, weight, subject ? subject->at(x, y)[0] : 0.f});
             total += double(weight);
         }
     if (lit.empty())
         return 0;
     std::sort(lit.begin(), lit.end(), [](const Metered& a, const Metered& b) {
-        return a.luminance != b.luminance ? a.luminance < b.luminance : a.weight < b.weight;
+        return std::tie(a.luminance, a.weight, a.subject) < std::tie(b.luminance, b.weight, b.subject);
     });
     double passed = 0;
     const auto bright_pixel = std::find_if(lit.begin(), lit.end(), [&](const Metered& pixel) {
@@ -79,22 +96,24 @@ float automatic_exposure_stops(const Image& radiance) {
         return passed >= double(kBrightShare) * total;
     });
     const double bright = std::log2(double((bright_pixel == lit.end() ? lit.back() : *bright_pixel).luminance));
+    const double gain = subject_gain(lit);
     double sum = 0, counted = 0;
     for (const Metered& pixel : lit) {
         const double stops = std::log2(double(pixel.luminance));
         if (stops < bright - kDeepStops || stops > bright)
             continue;
-        sum += double(pixel.weight) * stops;
-        counted += double(pixel.weight);
+        const double weight = double(pixel.weight) * (1 + (gain - 1) * double(pixel.subject));
+        sum += weight * stops;
+        counted += weight;
     }
     const double for_mean = std::log2(double(kMiddleGrey * kCompensation)) - sum / counted;
     const double for_bright = std::log2(double(kHighlight)) - bright;
     return float(for_mean <= for_bright ? for_mean : for_bright + kYield * (for_mean - for_bright));
 }
 
-Image tone_map(const Image& radiance, std::optional<float> exposure_stops) {
+Image tone_map(const Image& radiance, std::optional<float> exposure_stops, const Image* subject) {
     check_channels(radiance);
-    const float stops = exposure_stops ? *exposure_stops : automatic_exposure_stops(radiance);
+    const float stops = exposure_stops ? *exposure_stops : automatic_exposure_stops(radiance, subject);
     if (!std::isfinite(stops))
         throw InputError("exposure " + std::to_string(stops) + " stops: give a finite number, or none for automatic");
     // In double: the dimmest radiance at the highest exposure still has a product.

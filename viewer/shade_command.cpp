@@ -29,16 +29,17 @@ struct Shading {
     PatchOrigins origins;
     Solution solution;
     std::optional<Image> picture; ///< linear radiance
+    Image subject;                ///< where the picture shows the tree
     std::vector<std::string> warnings;
 };
 
-Image draw(const Shading& shading, const ShadeOptions& options, Progress& progress) {
+Image draw(const Shading& shading, const ShadeOptions& options, Image& subject, Progress& progress) {
     ShadedScene scene = shaded_scene(shading.tree, shading.patches, shading.origins, shading.solution);
     scene.foot_height = foot_height(shading.tree);
     const RayQueries queries(shading.patches);
     const float aspect = float(options.picture.width) / float(options.picture.height);
     const Camera camera = frame_scene(shading.patches, aspect, photographers_azimuth(shading.environment));
-    return render_picture(scene, queries, shading.environment, camera, options.picture, progress);
+    return render_picture(scene, queries, shading.environment, camera, options.picture, progress, &subject);
 }
 
 void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress& progress) {
@@ -70,7 +71,7 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
                              "shines on it");
     progress.throw_if_stopped();
     if (!options.image.empty())
-        s.picture = clock.run("picture", [&] { return draw(s, options, progress); });
+        s.picture = clock.run("picture", [&] { return draw(s, options, s.subject, progress); });
     progress.throw_if_stopped();
 }
 
@@ -84,9 +85,9 @@ void write_shaded_tree(const ShadeOptions& options, const Shading& s, Progress& 
     write_tree(options.output, s.tree, &attributes, {.split_sides = options.split_sides}, progress);
 }
 
-void write_picture(const ShadeOptions& options, const Image& radiance) {
+void write_picture(const ShadeOptions& options, const Image& radiance, const Image& subject) {
     if (lower_ending(options.image) == ".png")
-        save_image(options.image, tone_map(radiance, options.picture.exposure_stops),
+        save_image(options.image, tone_map(radiance, options.picture.exposure_stops, &subject),
                    {.png_encoding = PngEncoding::as_is});
     else
         save_image(options.image, radiance);
@@ -154,7 +155,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         if (!options.output.empty())
             write_shaded_tree(options, shading, *context.progress);
         if (shading.picture)
-            write_picture(options, *shading.picture);
+            write_picture(options, *shading.picture, shading.subject);
     });
     record.tree = &shading.tree;
     record.patches = &shading.patches;

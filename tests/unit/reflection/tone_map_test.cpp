@@ -84,5 +84,26 @@ TEST(AutomaticExposure, DoesNotBlowOutABrightFifth) {
     EXPECT_LT(std::exp2(automatic_exposure_stops(image)), 3.f);
 }
 
+TEST(ToneMap, ASlenderSubjectIsNotLostAgainstTheSky) {
+    Image picture = filled(40, 40, {0.5f, 0.6f, 0.8f}), subject(40, 40, 1);
+    for (int y = 0; y < 40; ++y)
+        for (int c = 0; c < 3; ++c) {
+            picture.at(20, y)[c] = 0.05f;
+            subject.at(20, y)[0] = 1.f;
+        }
+    const float of_all = automatic_exposure_stops(picture), of_tree = automatic_exposure_stops(picture, &subject);
+    EXPECT_GT(of_tree, of_all + 0.3f);
+    EXPECT_LT(of_tree, of_all + 3.f) << "the sky still counts";
+    // What fills the picture anyway has no need of it.
+    const Image everywhere = [] {
+        Image mask(40, 40, 1);
+        std::fill(mask.pixels.begin(), mask.pixels.end(), 1.f);
+        return mask;
+    }();
+    EXPECT_EQ(automatic_exposure_stops(picture, &everywhere), of_all);
+    const Image other_size(3, 3, 1);
+    EXPECT_THROW(automatic_exposure_stops(picture, &other_size), InputError);
+}
+
 } // namespace
 } // namespace kokage
