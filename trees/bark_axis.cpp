@@ -102,12 +102,176 @@ void join_near_knots(std::vector<Knot>& knots, const std::vector<std::uint32_t>&
     }
 }
 
+glm::vec3 centre_of(const std::vector<std::uint32_t>& ring, std::span<const glm::vec3> positions) {
+    glm::dvec3 sum(0.0);
+    for (const std::uint32_t v : ring)
+        sum += glm::dvec3(positions[v]);
+    return glm::vec3(sum / double(ring.size()));
+}
+
+/// Links a chain as an axis tree.
+void link_chain(std::vector<AxisNode>& nodes) {
+    for (std::uint32_t i = 0; i < nodes.size(); ++i) {
+        nodes[i].parent = i > 0 ? i - 1 : kNone;
+        nodes[i].children.clear();
+        if (i + 1 < nodes.size())
+            nodes[i].children.push_back(i + 1);
+    }
+    nodes.back().reach = 0;
+    for (std::size_t i = nodes.size() - 1; i-- > 0;)
+        nodes[i].reach = nodes[i + 1].reach + glm::distance(nodes[i].position, nodes[i + 1].position);
+}
+
+/// How far rings are from round: the mean, over all vertices, of how much their distance from the centre differs from
+/// the ring's mean. Rings that are cut aslant are not round.
+double unevenness(const std::vector<std::vector<std::uint32_t>>& rings, std::span<const glm::vec3> positions) {
+    double sum = 0, count = 0;
+    for (const std::vector<std::uint32_t>& ring : rings) {
+        const glm::vec3 centre = centre_of(ring, positions);
+        double radius = 0;
+        for (const std::uint32_t v : ring)
+            radius += double(glm::distance(positions[v], centre));
+        radius /= double(ring.size());
+        count += double(ring.size());
+        for (const std::uint32_t v : ring)
+            sum += radius > 0 ? std::abs(double(glm::distance(positions[v], centre)) / radius - 1) : 0.0;
+    }
+    return sum / count;
+}
+
 } // namespace
+
+void reverse_chain(std::vector<AxisNode>& nodes) {
+    std::reverse(nodes.begin(), nodes.end());
+    link_chain(nodes);
+}
 
 BarkMesh::BarkMesh(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles)
     : positions_(positions), welded_(weld(positions)), neighbours_(vertex_neighbours(triangles, welded_)),
       distance_(positions.size(), 0.f), node_of_(positions.size(), kNone) {
     find_pieces(triangles);
+    find_rims(triangles);
+}
+
+void BarkMesh::find_rims(std::span<const glm::uvec3> triangles) {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;
+    edges.reserve(3 * triangles.size());
+    for (const glm::uvec3& t : triangles)
+        for (int c = 0; c < 3; ++c) {
+            const std::uint32_t a = welded_[t[c]], b = welded_[t[(c + 1) % 3]];
+            if (a != b)
+                edges.emplace_back(std::min(a, b), std::max(a, b));
+        }
+    std::sort(edges.begin(), edges.end());
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
+    for (std::size_t i = 0; i < edges.size();) {
+        std::size_t end = i + 1;
+        while (end < edges.size() && edges[end] == edges[i])
+            ++end;
+        if (end == i + 1) {
+            pairs.push_back(edges[i]);
+            pairs.emplace_back(edges[i].second, edges[i].first);
+        }
+        i = end;
+    }
+    std::sort(pairs.begin(), pairs.end());
+    rims_.first.assign(positions_.size() + 1, 0);
+    for (const auto& [from, to] : pairs) {
+        ++rims_.first[from + 1];
+        rims_.items.push_back(to);
+    }
+    for (std::size_t i = 0; i < positions_.size(); ++i)
+        rims_.first[i + 1] += rims_.first[i];
+}
+
+/// The open edge that a vertex lies on, empty if it lies on none.
+std::vector<std::uint32_t> BarkMesh::rim_of(std::uint32_t vertex, const BarkPiece& piece) {
+    std::vector<std::uint32_t> rim;
+    if (rims_.of(vertex).empty())
+        return rim;
+    for (const std::uint32_t v : piece.vertices)
+        node_of_[v] = kNone;
+    rim.push_back(vertex);
+    node_of_[vertex] = 0;
+    for (std::size_t i = 0; i < rim.size(); ++i)
+        for (const std::uint32_t other : rims_.of(rim[i]))
+            if (node_of_[other] == kNone) {
+                node_of_[other] = 0;
+                rim.push_back(other);
+            }
+    return rim;
+}
+
+/// What lies 0, 1, 2, ... edges away from a start; empty if some of these sets is not connected.
+std::vector<std::vector<std::uint32_t>> BarkMesh::rings_from(const std::vector<std::uint32_t>& start,
+                                                             const BarkPiece& piece) {
+    for (const std::uint32_t v : piece.vertices)
+        node_of_[v] = kNone;
+    std::vector<std::vector<std::uint32_t>> rings{start};
+    for (const std::uint32_t v : start)
+        node_of_[v] = 0;
+    while (true) {
+        const std::uint32_t number = std::uint32_t(rings.size());
+        std::vector<std::uint32_t> ring;
+        for (const std::uint32_t v : rings.back())
+            for (const std::uint32_t other : neighbours_.of(v))
+                if (node_of_[other] == kNone) {
+                    node_of_[other] = number;
+                    ring.push_back(other);
+                }
+        if (ring.empty())
+            break;
+        rings.push_back(std::move(ring));
+    }
+    std::vector<std::uint32_t> reached;
+    for (std::size_t r = 0; r < rings.size(); ++r) { // kNone marks what has been reached again
+        reached.assign(1, rings[r].front());
+        node_of_[rings[r].front()] = kNone;
+        for (std::size_t i = 0; i < reached.size(); ++i)
+            for (const std::uint32_t other : neighbours_.of(reached[i]))
+                if (node_of_[other] == r) {
+                    node_of_[other] = kNone;
+                    reached.push_back(other);
+                }
+        if (reached.size() != rings[r].size())
+            return {};
+    }
+    return rings;
+}
+
+std::optional<TubeAxis> BarkMesh::tube_axis(const BarkPiece& piece) {
+    constexpr double kMostUneven = 0.25;
+    std::vector<std::vector<std::uint32_t>> best;
+    double least = kMostUneven;
+    for (const BarkEnd& end : ends(piece)) {
+        const std::vector<std::uint32_t> rim = rim_of(end.vertex, piece);
+        std::vector<std::vector<std::uint32_t>> rings =
+            rings_from(rim.empty() ? std::vector<std::uint32_t>{end.vertex} : rim, piece);
+        if (rings.size() < 2)
+            continue;
+        if (const double uneven = unevenness(rings, positions_); uneven < least) {
+            least = uneven;
+            best = std::move(rings);
+        }
+    }
+    if (best.empty())
+        return std::nullopt;
+    TubeAxis axis;
+    for (const std::vector<std::uint32_t>& ring : best) {
+        AxisNode node;
+        node.position = centre_of(ring, positions_);
+        for (const std::uint32_t v : ring)
+            node.radius_m += glm::distance(positions_[v], node.position) / float(ring.size());
+        axis.nodes.push_back(std::move(node));
+    }
+    // Radii at a quarter of the rings from either end tell which is the base.
+    const std::size_t count = axis.nodes.size(), quarter = count / 4;
+    if (axis.nodes[quarter].radius_m < axis.nodes[count - 1 - quarter].radius_m)
+        std::reverse(axis.nodes.begin(), axis.nodes.end());
+    for (std::size_t i = 0; i + 1 < count; ++i)
+        axis.base_radius_m = std::max(axis.base_radius_m, std::min(axis.nodes[i].radius_m, axis.nodes[i + 1].radius_m));
+    link_chain(axis.nodes);
+    return axis;
 }
 
 void BarkMesh::find_pieces(std::span<const glm::uvec3> triangles) {

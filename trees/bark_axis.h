@@ -4,6 +4,7 @@
 
 #include <array>
 #include <limits>
+#include <optional>
 #include <span>
 
 namespace kokage {
@@ -32,6 +33,15 @@ struct BarkEnd {
     float radius_m = 0;
 };
 
+/// The axis of a piece that is one tube, as a chain; parents and children are set from the first to the last.
+struct TubeAxis {
+    std::vector<AxisNode> nodes; ///< at least 2; the thicker end first
+    float base_radius_m = 0;     ///< the largest that two neighbouring rings reach: single bumps don't count
+};
+
+/// Turns a chain of axis nodes round.
+void reverse_chain(std::vector<AxisNode>& nodes);
+
 class BarkMesh {
   public:
     /// The arrays must outlive it.
@@ -43,6 +53,11 @@ class BarkMesh {
     /// The two ends that lie farthest apart along the surface.
     std::array<BarkEnd, 2> ends(const BarkPiece& piece);
 
+    /// Most tools make a branch of rings of vertices, each joined to the next alone. Then rings are what lies equally
+    /// many edges from the tip (or from the rim of an open end), and their centres are the axis, exactly. Empty if the
+    /// piece is not made so.
+    std::optional<TubeAxis> tube_axis(const BarkPiece& piece);
+
     /// The axis tree of a piece, beginning at `base` (a vertex of the piece). Level sets of the distance along the
     /// surface, at their centroids (Verroust and Lazarus 1999). Distance is taken from the tip farthest from the base:
     /// around a thin tip all rails of a tube are equally long, around a thick base they are not, and slanted level sets
@@ -52,12 +67,16 @@ class BarkMesh {
 
   private:
     void find_pieces(std::span<const glm::uvec3> triangles);
+    void find_rims(std::span<const glm::uvec3> triangles);
+    std::vector<std::uint32_t> rim_of(std::uint32_t vertex, const BarkPiece& piece);
+    std::vector<std::vector<std::uint32_t>> rings_from(const std::vector<std::uint32_t>& start, const BarkPiece& piece);
     void measure_distances(std::uint32_t from, const BarkPiece& piece);
     std::uint32_t furthest_vertex(const BarkPiece& piece) const;
 
     std::span<const glm::vec3> positions_;
     std::vector<std::uint32_t> welded_;
     Adjacency neighbours_;
+    Adjacency rims_; ///< neighbours along edges of one triangle
     std::vector<BarkPiece> pieces_;
     std::vector<float> distance_;        ///< per vertex, within the piece at work
     std::vector<std::uint32_t> node_of_; ///< per vertex, within the piece at work

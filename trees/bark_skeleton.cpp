@@ -1,7 +1,7 @@
 #include "trees/bark_skeleton.h"
 
-#include "common/geometry/point_tree.h"
 #include "trees/bark_axis.h"
+#include "trees/standing_wood.h"
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ class BranchWriter {
             const auto index = std::int32_t(skeleton_.branches.size());
             if (start.at_fork)
                 branch.nodes.push_back({nodes[nodes[start.node].parent].position, nodes[start.node].radius_m});
-            else if (joint)
+            else if (joint && glm::distance(joint->position, nodes[0].position) > 0.1f * joint->radius_m)
                 branch.nodes.push_back({joint->position, std::min(joint->radius_m, nodes[0].radius_m)});
             for (std::uint32_t node = start.node;;) {
                 branch.nodes.push_back({nodes[node].position, nodes[node].radius_m});
@@ -88,71 +88,42 @@ class BranchWriter {
     Skeleton& skeleton_;
 };
 
+/// Where a tube begins and ends, as BarkMesh::ends() tells it of any piece.
+std::array<BarkEnd, 2> ends_of(const TubeAxis& tube) {
+    const AxisNode &base = tube.nodes.front(), &tip = tube.nodes.back();
+    return {BarkEnd{0, base.position, base.radius_m}, BarkEnd{1, tip.position, tip.radius_m}};
+}
+
 /// Where a piece meets wood that is already there.
 struct Contact {
-    std::uint32_t vertex = kNone, sample = kNone;
-    float depth = std::numeric_limits<float>::infinity(); ///< distance from the axis less its radius: negative inside
-    bool touches = false;
-};
-
-/// Wood that later pieces may hang on.
-class StandingWood {
-  public:
-    /// The part of a branch within its parent is no place to hang on: the parent is.
-    void add(const Skeleton& skeleton, std::size_t first_branch) {
-        for (const AxisSamples::Sample& sample : sample_axes(skeleton, first_branch).samples) {
-            const Branch& branch = skeleton.branches[sample.branch];
-            if (branch.parent >= 0) {
-                const glm::vec3& joint = branch.nodes[0].position;
-                if (glm::distance(joint, sample.position) <=
-                    radius_near(skeleton.branches[std::size_t(branch.parent)], joint))
-                    continue;
-            }
-            samples.push_back(sample);
-            tree_.add(sample.position);
-        }
-    }
-
-    Contact nearest(const glm::vec3& place, std::uint32_t vertex, float reach) const {
-        const NearestPoint found = tree_.nearest(place);
-        if (!found.found())
-            return {};
-        const float depth = found.distance - samples[found.index].radius_m;
-        return {vertex, found.index, depth, depth <= reach};
-    }
-
-    std::vector<AxisSamples::Sample> samples;
-
-  private:
-    static float radius_near(const Branch& branch, const glm::vec3& place) {
-        const auto nearest = std::min_element(
-            branch.nodes.begin(), branch.nodes.end(), [&](const Branch::Node& a, const Branch::Node& b) {
-                return glm::distance(a.position, place) < glm::distance(b.position, place);
-            });
-        return nearest->radius_m;
-    }
-
-    GrowingPointTree tree_;
+    std::uint32_t vertex = kNone; ///< of a tube: 0 its base, 1 its tip
+    WoodHold hold;
 };
 
 /// An end of the piece that lies in or on standing wood (the thicker one, if both do); else whichever vertex reaches
 /// deepest.
-Contact find_contact(BarkMesh& mesh, const BarkPiece& piece, const StandingWood& wood) {
-    const std::array<BarkEnd, 2> ends = mesh.ends(piece);
+Contact find_contact(BarkMesh& mesh, const BarkPiece& piece, const std::optional<TubeAxis>& tube,
+                     const StandingWood& wood) {
+    const std::array<BarkEnd, 2> ends = tube ? ends_of(*tube) : mesh.ends(piece);
     std::array<Contact, 2> contacts;
     for (std::size_t e = 0; e < 2; ++e)
-        contacts[e] = wood.nearest(ends[e].centre, ends[e].vertex, 0.5f * ends[e].radius_m);
-    if (contacts[0].touches || contacts[1].touches) {
-        const bool first = contacts[0].touches != contacts[1].touches   ? contacts[0].touches
-                           : ends[0].radius_m > 1.2f * ends[1].radius_m ? true
-                           : ends[1].radius_m > 1.2f * ends[0].radius_m ? false
-                                                                        : contacts[0].depth < contacts[1].depth;
+        contacts[e] = {ends[e].vertex, wood.nearest(ends[e].centre, 0.5f * ends[e].radius_m)};
+    if (contacts[0].hold.touches || contacts[1].hold.touches) {
+        const bool first = contacts[0].hold.touches != contacts[1].hold.touches ? contacts[0].hold.touches
+                           : ends[0].radius_m > 1.2f * ends[1].radius_m         ? true
+                           : ends[1].radius_m > 1.2f * ends[0].radius_m
+                               ? false
+                               : contacts[0].hold.depth < contacts[1].hold.depth;
         return contacts[first ? 0 : 1];
     }
     Contact deepest;
+    if (tube) { // its ends alone: what else it touches it grows past
+        deepest = contacts[contacts[1].hold.depth < contacts[0].hold.depth ? 1 : 0];
+        return deepest;
+    }
     for (const std::uint32_t v : piece.vertices) {
-        const Contact contact = wood.nearest(mesh.position(v), v, float(piece.thickness));
-        if (contact.depth < deepest.depth)
+        const Contact contact{v, wood.nearest(mesh.position(v), float(piece.thickness))};
+        if (contact.hold.depth < deepest.hold.depth)
             deepest = contact;
     }
     return deepest;
@@ -166,11 +137,15 @@ std::uint32_t lowest_vertex(const BarkMesh& mesh, const BarkPiece& piece) {
 }
 
 /// The trunk first, then thick before thin.
-std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces, double low, double high) {
+std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
+                                       const std::vector<std::optional<TubeAxis>>& tubes, double low, double high) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
+    const auto thickness = [&](std::size_t piece) {
+        return tubes[piece] ? double(tubes[piece]->base_radius_m) : pieces[piece].thickness;
+    };
     std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return pieces[a].thickness > pieces[b].thickness; });
+                     [&](std::size_t a, std::size_t b) { return thickness(a) > thickness(b); });
     auto trunk = order.end();
     for (auto i = order.begin(); i != order.end(); ++i)
         if (pieces[*i].low.y <= low + 0.1 * (high - low) &&
@@ -182,27 +157,6 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces, dou
 }
 
 } // namespace
-
-AxisSamples sample_axes(const Skeleton& skeleton, std::size_t first_branch) {
-    AxisSamples axes;
-    for (std::size_t b = first_branch; b < skeleton.branches.size(); ++b) {
-        const std::vector<Branch::Node>& nodes = skeleton.branches[b].nodes;
-        for (std::size_t n = 0; n < nodes.size(); ++n) {
-            axes.samples.push_back({nodes[n].position, nodes[n].radius_m, std::uint32_t(b)});
-            if (n + 1 == nodes.size())
-                break;
-            const float length = glm::distance(nodes[n].position, nodes[n + 1].position);
-            const float radius = std::max(nodes[n].radius_m, nodes[n + 1].radius_m);
-            const int steps = radius > 0 ? int(std::clamp(std::ceil(length / radius), 1.f, 32.f)) : 4;
-            for (int s = 1; s < steps; ++s) {
-                const float t = float(s) / float(steps);
-                axes.samples.push_back({glm::mix(nodes[n].position, nodes[n + 1].position, t),
-                                        glm::mix(nodes[n].radius_m, nodes[n + 1].radius_m, t), std::uint32_t(b)});
-            }
-        }
-    }
-    return axes;
-}
 
 BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     BarkSkeleton result;
@@ -217,19 +171,31 @@ BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<
     }
     StandingWood wood;
     BranchWriter writer(result.skeleton);
-    for (const std::size_t p : joining_order(mesh.pieces(), low, high)) {
+    std::vector<std::optional<TubeAxis>> tubes;
+    for (const BarkPiece& piece : mesh.pieces())
+        tubes.push_back(mesh.tube_axis(piece));
+    for (const std::size_t p : joining_order(mesh.pieces(), tubes, low, high)) {
         const BarkPiece& piece = mesh.pieces()[p];
-        const Contact contact = find_contact(mesh, piece, wood);
-        const bool stem = contact.sample == kNone || (!contact.touches && piece.low.y <= low + 0.1 * (high - low));
+        const Contact contact = find_contact(mesh, piece, tubes[p], wood);
+        const bool stem =
+            !contact.hold.axis.found || (!contact.hold.touches && piece.low.y <= low + 0.1 * (high - low));
         const std::size_t first = result.skeleton.branches.size();
+        const auto axis = [&](std::uint32_t base) {
+            if (!tubes[p])
+                return mesh.axis_tree(piece, base);
+            if (base == 1)
+                reverse_chain(tubes[p]->nodes);
+            return tubes[p]->nodes;
+        };
         if (stem) {
-            writer.write(mesh.axis_tree(piece, lowest_vertex(mesh, piece)), -1, nullptr);
+            const bool tip_is_lower =
+                tubes[p] && tubes[p]->nodes.back().position.y < tubes[p]->nodes.front().position.y;
+            writer.write(axis(tubes[p] ? (tip_is_lower ? 1 : 0) : lowest_vertex(mesh, piece)), -1, nullptr);
             ++result.stems;
         } else {
-            const AxisSamples::Sample& sample = wood.samples[contact.sample];
-            const Branch::Node joint{sample.position, sample.radius_m};
-            writer.write(mesh.axis_tree(piece, contact.vertex), std::int32_t(sample.branch), &joint);
-            result.floating += contact.touches ? 0 : 1;
+            const Branch::Node joint{contact.hold.axis.position, contact.hold.axis.radius_m};
+            writer.write(axis(contact.vertex), std::int32_t(contact.hold.axis.branch), &joint);
+            result.floating += contact.hold.touches ? 0 : 1;
         }
         wood.add(result.skeleton, first);
     }

@@ -1,23 +1,10 @@
 #pragma once
 // The branching of a foreign tree, inferred from its bark mesh. Private to trees.
-#include "trees/tree.h"
+#include "trees/axis_samples.h"
 
 #include <span>
 
 namespace kokage {
-
-/// Points along a skeleton's axes, dense enough that the nearest one tells the branch, its place and its radius.
-struct AxisSamples {
-    struct Sample {
-        glm::vec3 position;
-        float radius_m;
-        std::uint32_t branch;
-    };
-    std::vector<Sample> samples;
-};
-
-/// `first_branch`: samples of branches before it are left out.
-AxisSamples sample_axes(const Skeleton& skeleton, std::size_t first_branch = 0);
 
 struct BarkSkeleton {
     Skeleton skeleton;

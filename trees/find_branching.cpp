@@ -1,6 +1,6 @@
 #include "trees/find_branching.h"
 
-#include "common/geometry/point_tree.h"
+#include "common/services/parallel.h"
 #include "trees/bark_skeleton.h"
 
 #include <algorithm>
@@ -127,29 +127,78 @@ class TwigMaker {
     float crown_;
 };
 
-/// Gives each leaf to the branch whose axis is nearest; returns the leaves of each branch and their distances.
+/// The leaves of each branch, and each one's distance from wood.
 struct Bearing {
     std::vector<std::vector<std::uint32_t>> leaves;
     std::vector<float> distance;
 };
 
+/// Where a leaf may hang on wood: its corners, and the middles of the edges of cards, which have no corner at their
+/// foot.
+struct LeafPoints {
+    std::vector<std::uint32_t> first; ///< leaf count + 1
+    std::vector<glm::vec3> points;
+    std::span<const glm::vec3> of(std::size_t leaf) const {
+        return std::span(points).subspan(first[leaf], first[leaf + 1] - first[leaf]);
+    }
+};
+
+LeafPoints points_of_leaves(const Tree& tree) {
+    constexpr std::uint32_t kCardTriangles = 4;
+    std::vector<std::uint32_t> triangles(tree.leaves.size(), 0);
+    for (const TreePart& part : tree.parts)
+        if (part.kind == TreePartKind::foliage)
+            for (const std::uint32_t leaf : part.triangle_patch)
+                ++triangles[leaf];
+    LeafPoints result;
+    result.first.assign(tree.leaves.size() + 1, 0);
+    for (std::size_t leaf = 0; leaf < triangles.size(); ++leaf)
+        result.first[leaf + 1] = result.first[leaf] + triangles[leaf] * (triangles[leaf] <= kCardTriangles ? 6 : 3);
+    result.points.resize(result.first.back());
+    std::vector<std::uint32_t> next(result.first.begin(), result.first.end() - 1);
+    for (const TreePart& part : tree.parts) {
+        if (part.kind != TreePartKind::foliage)
+            continue;
+        for (std::size_t t = 0; t < part.triangles.size(); ++t) {
+            const std::uint32_t leaf = part.triangle_patch[t];
+            for (int c = 0; c < 3; ++c) {
+                const glm::vec3 &a = part.positions[part.triangles[t][c]],
+                                &b = part.positions[part.triangles[t][(c + 1) % 3]];
+                result.points[next[leaf]++] = a;
+                if (triangles[leaf] <= kCardTriangles)
+                    result.points[next[leaf]++] = 0.5f * (a + b);
+            }
+        }
+    }
+    return result;
+}
+
+/// Gives each leaf to the branch that it hangs on: the one whose axis a point of the leaf touches; of leaves that touch
+/// none, the one nearest to the leaf's centre.
 Bearing assign_leaves(Tree& tree) {
     Bearing bearing;
     bearing.leaves.resize(tree.skeleton.branches.size());
     bearing.distance.resize(tree.leaves.size());
-    const AxisSamples axes = sample_axes(tree.skeleton);
-    std::vector<glm::vec3> points;
-    points.reserve(axes.samples.size());
-    for (const AxisSamples::Sample& sample : axes.samples)
-        points.push_back(sample.position);
-    const PointTree nearest_axis(points);
-    for (std::uint32_t leaf = 0; leaf < tree.leaves.size(); ++leaf) {
-        const NearestPoint nearest = nearest_axis.nearest(tree.leaves[leaf].centre);
-        const AxisSamples::Sample& sample = axes.samples[nearest.index];
-        tree.leaves[leaf].branch = std::int32_t(sample.branch);
-        bearing.leaves[sample.branch].push_back(leaf);
-        bearing.distance[leaf] = std::max(0.f, nearest.distance - sample.radius_m);
-    }
+    const NearestAxis axes(tree.skeleton);
+    const LeafPoints points = points_of_leaves(tree);
+    parallel_blocks(tree.leaves.size(), 512, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t leaf = begin; leaf < end; ++leaf) {
+            const glm::vec3& centre = tree.leaves[leaf].centre;
+            const AxisPlace nearest = axes.at(centre);
+            AxisPlace hold = nearest; // the point of the leaf that is nearest to an axis, and so holds it
+            float reach = 0;
+            for (const glm::vec3& point : points.of(leaf)) {
+                reach = std::max(reach, glm::distance(point, centre));
+                if (const AxisPlace place = axes.at(point); place.distance < hold.distance)
+                    hold = place;
+            }
+            const bool touches = hold.distance - hold.radius_m <= 0.25f * reach;
+            tree.leaves[leaf].branch = std::int32_t((touches ? hold : nearest).branch);
+            bearing.distance[leaf] = std::max(0.f, nearest.distance - nearest.radius_m);
+        }
+    });
+    for (std::uint32_t leaf = 0; leaf < tree.leaves.size(); ++leaf)
+        bearing.leaves[std::size_t(tree.leaves[leaf].branch)].push_back(leaf);
     return bearing;
 }
 

@@ -1,10 +1,9 @@
 #include "trees/foreign_tree.h"
 
-#include "common/geometry/point_tree.h"
 #include "common/geometry/triangle_topology.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
-#include "trees/bark_skeleton.h"
+#include "trees/axis_samples.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
 #include "trees/stand_in_colors.h"
@@ -136,20 +135,14 @@ std::vector<Leaf> leaf_centres(const Tree& tree, std::uint32_t count) {
 /// ring fits.
 void cut_bark(Tree& tree, std::vector<GltfMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
               std::vector<PartBuilder>& parts, float crown) {
-    const AxisSamples axes = sample_axes(tree.skeleton);
-    std::vector<glm::vec3> points;
-    for (const AxisSamples::Sample& sample : axes.samples)
-        points.push_back(sample.position);
-    const PointTree nearest_axis(points);
+    const NearestAxis nearest_axis(tree.skeleton);
     SurfacePatchLimits limits;
     limits.max_turn = 0.7854f;
     limits.keep_cards = false;
     limits.max_radius = [&](const glm::vec3& place) {
-        const NearestPoint nearest = nearest_axis.nearest(place);
+        const AxisPlace nearest = nearest_axis.at(place);
         // A quarter of the circumference wide and as long as the circumference: an area of (2 pi r)^2 / 4.
-        const float around =
-            2 * kPi *
-            (nearest.found() ? std::max(axes.samples[nearest.index].radius_m, 0.2f * nearest.distance) : crown);
+        const float around = 2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown);
         return std::max(0.5f * around / std::sqrt(kPi), 0.005f * crown);
     };
     for (GltfMesh& mesh : bark) {

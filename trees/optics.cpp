@@ -1,6 +1,8 @@
 // Optics of a tree's materials (declared in trees/patches.h).
 #include "trees/patches.h"
 
+#include "common/services/random.h"
+
 #include <algorithm>
 #include <cmath>
 
@@ -104,7 +106,8 @@ glm::vec3 mean_base_color(const Tree& tree, std::uint32_t material_index, TreePa
         triangles += counts(part) ? part.triangles.size() : 0;
     if (triangles == 0)
         return factor * whole_texture_mean(material);
-    // About 50,000 points in all: some on every triangle of a small mesh, on every so-manyth of a large one.
+    // About 50,000 points in all: some on every triangle of a small mesh, on one of every so many of a large one. Which
+    // one is random: leaves repeat their triangles, and equal steps could meet the same ones again and again.
     constexpr std::size_t points = 50000;
     const std::size_t stride = std::max<std::size_t>(1, triangles / (points / 8));
     const int points_per_triangle = int(std::clamp<std::size_t>(points / triangles, 8, 16384));
@@ -115,7 +118,7 @@ glm::vec3 mean_base_color(const Tree& tree, std::uint32_t material_index, TreePa
             continue;
         for (const glm::uvec3& t : part.triangles) {
             const std::size_t here = index++;
-            if (here % stride != 0)
+            if (here % stride != hash64(here / stride) % stride)
                 continue;
             const double area = triangle_area(part, t);
             if (!(area > 0) || !std::isfinite(area))
