@@ -10,6 +10,7 @@ namespace kokage {
 namespace {
 
 constexpr double kSphereShare = 0.95;
+constexpr double kSamePlace = 1e-5; // of the extent of all branching points: files round positions
 
 /// The last order that bears leaves; without leaves, the last order.
 int find_last_generation(const Tree& tree) {
@@ -60,6 +61,12 @@ std::vector<std::int32_t> sample_farthest_points(const Skeleton& skeleton, const
     std::vector<std::int32_t> picked;
     std::vector<double> distance2(candidates.size(), std::numeric_limits<double>::infinity());
     std::size_t next = find_start(skeleton, candidates);
+    glm::dvec3 low(branching_point(skeleton, candidates[0])), high = low;
+    for (const std::int32_t candidate : candidates) {
+        low = glm::min(low, glm::dvec3(branching_point(skeleton, candidate)));
+        high = glm::max(high, glm::dvec3(branching_point(skeleton, candidate)));
+    }
+    const double same_place = kSamePlace * glm::distance(low, high);
     while (picked.size() < count) {
         picked.push_back(candidates[next]);
         const glm::dvec3 latest = branching_point(skeleton, candidates[next]);
@@ -70,7 +77,7 @@ std::vector<std::int32_t> sample_farthest_points(const Skeleton& skeleton, const
             if (distance2[i] > distance2[farthest]) // strictly: ties go to the lower index
                 farthest = i;
         }
-        if (!(distance2[farthest] > 0))
+        if (!(distance2[farthest] > same_place * same_place))
             break;
         next = farthest;
     }

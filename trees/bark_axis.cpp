@@ -268,8 +268,12 @@ std::optional<TubeAxis> BarkMesh::tube_axis(const BarkPiece& piece) {
     const std::size_t count = axis.nodes.size(), quarter = count / 4;
     if (axis.nodes[quarter].radius_m < axis.nodes[count - 1 - quarter].radius_m)
         std::reverse(axis.nodes.begin(), axis.nodes.end());
-    for (std::size_t i = 0; i + 1 < count; ++i)
-        axis.base_radius_m = std::max(axis.base_radius_m, std::min(axis.nodes[i].radius_m, axis.nodes[i + 1].radius_m));
+    for (std::size_t i = 0; i < count; ++i) { // medians of three: single bumps, such as collars, don't count
+        const float here = axis.nodes[i].radius_m, before = axis.nodes[i > 0 ? i - 1 : 0].radius_m,
+                    after = axis.nodes[std::min(i + 1, count - 1)].radius_m;
+        axis.base_radius_m =
+            std::max(axis.base_radius_m, std::max(std::min(here, before), std::min(std::max(here, before), after)));
+    }
     link_chain(axis.nodes);
     return axis;
 }

@@ -36,7 +36,7 @@ struct BarkEnd {
 /// The axis of a piece that is one tube, as a chain; parents and children are set from the first to the last.
 struct TubeAxis {
     std::vector<AxisNode> nodes; ///< at least 2; the thicker end first
-    float base_radius_m = 0;     ///< the largest that two neighbouring rings reach: single bumps don't count
+    float base_radius_m = 0;     ///< the largest, single bumps left out
 };
 
 /// Turns a chain of axis nodes round.

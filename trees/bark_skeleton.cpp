@@ -144,8 +144,13 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
     const auto thickness = [&](std::size_t piece) {
         return tubes[piece] ? double(tubes[piece]->base_radius_m) : pieces[piece].thickness;
     };
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::size_t a, std::size_t b) { return thickness(a) > thickness(b); });
+    const auto place = [&](std::size_t piece) { // so that the order of the file does not matter
+        const BarkPiece& p = pieces[piece];
+        return std::array{p.low.x, p.low.y, p.low.z, p.high.x, p.high.y, p.high.z};
+    };
+    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+        return thickness(a) != thickness(b) ? thickness(a) > thickness(b) : place(a) < place(b);
+    });
     auto trunk = order.end();
     for (auto i = order.begin(); i != order.end(); ++i)
         if (pieces[*i].low.y <= low + 0.1 * (high - low) &&
@@ -156,49 +161,93 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
     return order;
 }
 
+/// Joins pieces to one another, branch by branch.
+class PieceJoiner {
+  public:
+    PieceJoiner(BarkMesh& mesh, BarkSkeleton& result) : mesh_(mesh), result_(result), writer_(result.skeleton) {
+        for (const BarkPiece& piece : mesh.pieces()) {
+            tubes_.push_back(mesh.tube_axis(piece));
+            low_ = std::min(low_, piece.low.y);
+            high_ = std::max(high_, piece.high.y);
+        }
+    }
+
+    /// First what begins exactly on the axis of wood that stands, as often as more does; then the others, the thickest
+    /// first.
+    void join_all() {
+        constexpr int kMostRounds = 64;
+        std::vector<std::size_t> pending = joining_order(mesh_.pieces(), tubes_, low_, high_);
+        join(pending.front());
+        pending.erase(pending.begin());
+        for (int round = 0; round < kMostRounds; ++round)
+            if (std::erase_if(pending, [&](std::size_t piece) { return join_on_axis(piece); }) == 0)
+                break;
+        for (const std::size_t piece : pending)
+            join(piece);
+    }
+
+  private:
+    bool near_ground(const BarkPiece& piece) const { return piece.low.y <= low_ + 0.1 * (high_ - low_); }
+
+    bool join_on_axis(std::size_t piece) {
+        if (!tubes_[piece])
+            return false;
+        const WoodHold hold = wood_.on_axis(tubes_[piece]->nodes.front().position);
+        if (hold.touches)
+            hang(piece, {0, hold});
+        return hold.touches;
+    }
+
+    void join(std::size_t piece) {
+        const Contact contact = find_contact(mesh_, mesh_.pieces()[piece], tubes_[piece], wood_);
+        if (contact.hold.axis.found && (contact.hold.touches || !near_ground(mesh_.pieces()[piece]))) {
+            hang(piece, contact);
+            return;
+        }
+        const std::size_t first = result_.skeleton.branches.size();
+        std::uint32_t base = 0;
+        if (!tubes_[piece])
+            base = lowest_vertex(mesh_, mesh_.pieces()[piece]);
+        else if (tubes_[piece]->nodes.back().position.y < tubes_[piece]->nodes.front().position.y)
+            base = 1;
+        writer_.write(axis_from(piece, base), -1, nullptr);
+        ++result_.stems;
+        wood_.add(result_.skeleton, first);
+    }
+
+    void hang(std::size_t piece, const Contact& contact) {
+        const std::size_t first = result_.skeleton.branches.size();
+        const Branch::Node joint{contact.hold.axis.position, contact.hold.axis.radius_m};
+        writer_.write(axis_from(piece, contact.vertex), std::int32_t(contact.hold.axis.branch), &joint);
+        result_.floating += contact.hold.touches ? 0 : 1;
+        wood_.add(result_.skeleton, first);
+    }
+
+    /// `base`: a vertex; of a tube 0 or 1, as in Contact.
+    std::vector<AxisNode> axis_from(std::size_t piece, std::uint32_t base) {
+        if (!tubes_[piece])
+            return mesh_.axis_tree(mesh_.pieces()[piece], base);
+        if (base == 1)
+            reverse_chain(tubes_[piece]->nodes);
+        return tubes_[piece]->nodes;
+    }
+
+    BarkMesh& mesh_;
+    BarkSkeleton& result_;
+    BranchWriter writer_;
+    StandingWood wood_;
+    std::vector<std::optional<TubeAxis>> tubes_;
+    double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+};
+
 } // namespace
 
 BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     BarkSkeleton result;
     BarkMesh mesh(positions, triangles);
     result.pieces = mesh.pieces().size();
-    if (mesh.pieces().empty())
-        return result;
-    double low = std::numeric_limits<double>::infinity(), high = -low;
-    for (const BarkPiece& piece : mesh.pieces()) {
-        low = std::min(low, piece.low.y);
-        high = std::max(high, piece.high.y);
-    }
-    StandingWood wood;
-    BranchWriter writer(result.skeleton);
-    std::vector<std::optional<TubeAxis>> tubes;
-    for (const BarkPiece& piece : mesh.pieces())
-        tubes.push_back(mesh.tube_axis(piece));
-    for (const std::size_t p : joining_order(mesh.pieces(), tubes, low, high)) {
-        const BarkPiece& piece = mesh.pieces()[p];
-        const Contact contact = find_contact(mesh, piece, tubes[p], wood);
-        const bool stem =
-            !contact.hold.axis.found || (!contact.hold.touches && piece.low.y <= low + 0.1 * (high - low));
-        const std::size_t first = result.skeleton.branches.size();
-        const auto axis = [&](std::uint32_t base) {
-            if (!tubes[p])
-                return mesh.axis_tree(piece, base);
-            if (base == 1)
-                reverse_chain(tubes[p]->nodes);
-            return tubes[p]->nodes;
-        };
-        if (stem) {
-            const bool tip_is_lower =
-                tubes[p] && tubes[p]->nodes.back().position.y < tubes[p]->nodes.front().position.y;
-            writer.write(axis(tubes[p] ? (tip_is_lower ? 1 : 0) : lowest_vertex(mesh, piece)), -1, nullptr);
-            ++result.stems;
-        } else {
-            const Branch::Node joint{contact.hold.axis.position, contact.hold.axis.radius_m};
-            writer.write(axis(contact.vertex), std::int32_t(contact.hold.axis.branch), &joint);
-            result.floating += contact.hold.touches ? 0 : 1;
-        }
-        wood.add(result.skeleton, first);
-    }
+    if (!mesh.pieces().empty())
+        PieceJoiner(mesh, result).join_all();
     return result;
 }
 

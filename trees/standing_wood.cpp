@@ -1,11 +1,12 @@
 #include "trees/standing_wood.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace kokage {
 namespace {
 
-constexpr float kOnAxis = 0.1f; // of the wood's radius
+constexpr float kOnAxis = 0.15f; // of the wood's radius: rings of rough bark have their middles that far off
 
 /// Of a branch's axis, what is nearest to a place.
 AxisPlace nearest_on(const Skeleton& skeleton, std::uint32_t branch, const glm::vec3& place) {
@@ -24,8 +25,10 @@ AxisPlace nearest_on(const Skeleton& skeleton, std::uint32_t branch, const glm::
 void StandingWood::add(const Skeleton& skeleton, std::size_t first_branch) {
     skeleton_ = &skeleton;
     for (const AxisSamples::Sample& sample : sample_axes(skeleton, first_branch).samples) {
-        all_.add(sample);
         const Branch& branch = skeleton.branches[sample.branch];
+        const float radius = std::max(sample.radius_m, 0.25f * branch.nodes[0].radius_m); // tips may have none
+        if (radius > 0)
+            by_radius_[std::ilogb(radius)].add(sample);
         if (branch.parent >= 0) {
             const Branch::Node& start = branch.nodes[0];
             const float parent_radius = nearest_on(skeleton, std::uint32_t(branch.parent), start.position).radius_m;
@@ -45,15 +48,31 @@ AxisPlace StandingWood::bearer_of(AxisPlace axis, const glm::vec3& place) const 
     }
 }
 
-WoodHold StandingWood::nearest(const glm::vec3& place, float reach) const {
+WoodHold StandingWood::on_axis(const glm::vec3& place) const {
     WoodHold hold;
-    hold.axis = all_.nearest(place);
+    float least = kOnAxis;
+    for (const auto& [magnitude, wood] : by_radius_) {
+        const AxisPlace axis = wood.nearest(place);
+        if (axis.distance <= least * axis.radius_m) {
+            hold.axis = axis;
+            least = axis.radius_m > 0 ? axis.distance / axis.radius_m : 0.f;
+        }
+    }
     if (!hold.axis.found)
         return hold;
-    hold.axis =
-        hold.axis.distance <= kOnAxis * hold.axis.radius_m ? bearer_of(hold.axis, place) : outer_.nearest(place);
+    hold.axis = bearer_of(hold.axis, place);
+    hold.depth = hold.axis.distance - hold.axis.radius_m;
+    hold.touches = true;
+    return hold;
+}
+
+WoodHold StandingWood::nearest(const glm::vec3& place, float reach) const {
+    if (const WoodHold hold = on_axis(place); hold.touches)
+        return hold;
+    WoodHold hold;
+    hold.axis = outer_.nearest(place);
     if (!hold.axis.found)
-        return {};
+        return hold;
     hold.depth = hold.axis.distance - hold.axis.radius_m;
     hold.touches = hold.depth <= reach;
     return hold;

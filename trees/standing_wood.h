@@ -3,6 +3,7 @@
 #include "trees/axis_samples.h"
 
 #include <limits>
+#include <map>
 
 namespace kokage {
 
@@ -17,10 +18,13 @@ class StandingWood {
   public:
     /// Takes in the branches from `first_branch` on; `skeleton` must outlive this.
     void add(const Skeleton& skeleton, std::size_t first_branch);
-    /// What the end of a branch at `place` hangs on; `reach`: how far from the surface counts as touching. Most tools
-    /// let branches begin exactly on the axis that bears them: then that axis it is, or, where another branch begins at
-    /// the same place, what bears that one. Else it is the nearest axis; the part of a branch within its parent is then
-    /// no place to hang on: the parent is.
+
+    /// Most tools let branches begin on the axis that bears them: what has its axis at `place`, measured by its
+    /// radius; where another branch begins at the same place, what bears that one. `touches` is false if there is none.
+    WoodHold on_axis(const glm::vec3& place) const;
+
+    /// on_axis(), else the nearest axis; the part of a branch within its parent is then no place to hang on: the parent
+    /// is. `reach`: how far from the surface counts as touching.
     WoodHold nearest(const glm::vec3& place, float reach) const;
 
   private:
@@ -39,7 +43,8 @@ class StandingWood {
     AxisPlace bearer_of(AxisPlace axis, const glm::vec3& place) const;
 
     const Skeleton* skeleton_ = nullptr;
-    Wood all_, outer_; ///< outer: without what lies within parents
+    std::map<int, Wood> by_radius_; ///< by the binary logarithm of the radius
+    Wood outer_;                    ///< without what lies within parents
 };
 
 } // namespace kokage
