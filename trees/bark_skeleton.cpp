@@ -141,8 +141,9 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
                                        const std::vector<std::optional<TubeAxis>>& tubes, double low, double high) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
-    const auto thickness = [&](std::size_t piece) {
-        return tubes[piece] ? double(tubes[piece]->base_radius_m) : pieces[piece].thickness;
+    const auto thickness = [&](std::size_t piece) { // in steps of 4 %, so that rounding does not decide
+        const double radius = tubes[piece] ? double(tubes[piece]->base_radius_m) : pieces[piece].thickness;
+        return radius > 0 ? int(std::lround(16 * std::log2(radius))) : std::numeric_limits<int>::min();
     };
     const auto place = [&](std::size_t piece) { // so that the order of the file does not matter
         const BarkPiece& p = pieces[piece];

@@ -4,6 +4,7 @@
 #include "trees/bark_skeleton.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -173,6 +174,25 @@ LeafPoints points_of_leaves(const Tree& tree) {
     return result;
 }
 
+/// The two points of a leaf that lie about farthest apart.
+std::array<glm::vec3, 2> ends_of(std::span<const glm::vec3> points, const glm::vec3& centre) {
+    const auto farthest_from = [&](const glm::vec3& place) {
+        glm::vec3 farthest = place;
+        for (const glm::vec3& point : points)
+            if (glm::distance(point, place) > glm::distance(farthest, place))
+                farthest = point;
+        return farthest;
+    };
+    const glm::vec3 first = farthest_from(centre);
+    return {first, farthest_from(first)};
+}
+
+/// Leaves hang by an end; by chance their other parts come near to wood as well.
+float doubt(const glm::vec3& point, const std::array<glm::vec3, 2>& ends) {
+    const float near_end = 0.3f * glm::distance(ends[0], ends[1]);
+    return std::min(glm::distance(point, ends[0]), glm::distance(point, ends[1])) <= near_end ? 1.f : 3.f;
+}
+
 /// Gives each leaf to the branch that it hangs on: the one whose axis a point of the leaf touches; of leaves that touch
 /// none, the one nearest to the leaf's centre.
 Bearing assign_leaves(Tree& tree) {
@@ -185,12 +205,16 @@ Bearing assign_leaves(Tree& tree) {
         for (std::size_t leaf = begin; leaf < end; ++leaf) {
             const glm::vec3& centre = tree.leaves[leaf].centre;
             const AxisPlace nearest = axes.at(centre);
-            AxisPlace hold = nearest; // the point of the leaf that is nearest to an axis, and so holds it
-            float reach = 0;
+            AxisPlace hold = nearest; // where the leaf comes nearest to an axis, and so hangs
+            float reach = 0, least = nearest.distance;
+            const std::array<glm::vec3, 2> ends = ends_of(points.of(leaf), centre);
             for (const glm::vec3& point : points.of(leaf)) {
                 reach = std::max(reach, glm::distance(point, centre));
-                if (const AxisPlace place = axes.at(point); place.distance < hold.distance)
+                const AxisPlace place = axes.at(point);
+                if (const float distance = place.distance * doubt(point, ends); distance < least) {
+                    least = distance;
                     hold = place;
+                }
             }
             const bool touches = hold.distance - hold.radius_m <= 0.25f * reach;
             tree.leaves[leaf].branch = std::int32_t((touches ? hold : nearest).branch);

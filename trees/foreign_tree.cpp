@@ -6,6 +6,7 @@
 #include "trees/axis_samples.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
+#include "trees/find_leaves.h"
 #include "trees/stand_in_colors.h"
 #include "trees/surface_patches.h"
 
@@ -255,24 +256,18 @@ Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions
         }
     const float crown = crown_radius(tree);
     tree.parts.clear();
-    SurfacePatchLimits limits;
-    const float leaf_radius = options.leaf_size > 0 ? options.leaf_size : 0.05f * crown;
-    limits.max_radius = [leaf_radius](const glm::vec3&) { return leaf_radius; };
-    std::uint32_t leaf_count = 0;
-    progress.begin("finding leaves", foliage.size());
-    for (const GltfMesh& mesh : foliage) {
-        progress.throw_if_stopped();
-        const std::vector<std::uint32_t> patch = surface_patches(mesh.positions, mesh.triangles, limits);
-        parts[part_index(mesh.material, TreePartKind::foliage)].append(mesh, patch, leaf_count);
-        leaf_count += patch_count(patch);
-        progress.advance(1);
-    }
+    const FoundLeaves leaves = find_leaves(foliage, scene.materials, options.leaf_size, crown, progress);
+    for (std::size_t m = 0; m < foliage.size(); ++m)
+        parts[part_index(foliage[m].material, TreePartKind::foliage)].append(foliage[m], leaves.leaf_of[m], 0);
+    const std::uint32_t leaf_count = leaves.count;
     if (leaf_count == 0)
         tree.notes.push_back("no foliage was found: say which material or mesh it is");
     else
         tree.notes.push_back(counted(leaf_count, "leaf", "leaves") +
                              ": connected foliage, cut where it turns by more than 30 degrees or is larger than " +
-                             metres_text(leaf_radius) + " in radius");
+                             metres_text(leaves.largest_radius_m) + " in radius");
+    if (leaves.stalks > 0)
+        tree.notes.push_back(counted(leaves.stalks, "stalk was", "stalks were") + " joined to their leaves");
 
     // Bark and branching.
     for (PartBuilder& builder : parts)

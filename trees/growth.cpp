@@ -49,9 +49,10 @@ Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* re
     GrownSkeleton grown = make_skeleton(std::move(wood), light, crown.height_m, parameters);
     end_stage("skeleton");
     tree.parts.resize(2);
+    const std::vector<Tube> tubes = make_tubes(grown.skeleton, parameters);
     std::vector<BarkPlace> places;
     TreePart all_bark;
-    tree.bark_patch_count = make_bark(grown.skeleton, parameters, all_bark, &places);
+    tree.bark_patch_count = make_bark(tubes, parameters, all_bark, &places);
     BarkInZones bark = split_by_zone(all_bark, places, parameters);
     tree.materials.push_back(bark_material(parameters, bark.zones[0]));
     tree.parts[0] = std::move(bark.parts[0]);
@@ -66,6 +67,7 @@ Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* re
         tree.materials.push_back(bark_material(parameters, bark.zones[zone]));
     }
     tree.skeleton = std::move(grown.skeleton);
+    move_to_centre_lines(tree.skeleton, tubes);
     end_stage("leaves");
     return tree;
 }

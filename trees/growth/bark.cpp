@@ -254,10 +254,9 @@ class TubeBuilder {
 
 } // namespace
 
-std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parameters, TreePart& part,
+std::uint32_t make_bark(const std::vector<Tube>& tubes, const GrowthParameters& parameters, TreePart& part,
                         std::vector<BarkPlace>* places) {
     constexpr std::size_t block = 64;
-    const std::vector<Tube> tubes = make_tubes(skeleton, parameters);
     const std::size_t count = tubes.size();
     std::vector<BarkPiece> pieces((count + block - 1) / block);
     parallel_blocks(count, block, [&](std::size_t begin, std::size_t end) {

@@ -1,7 +1,6 @@
 #pragma once
-// Skeleton -> bark.
-#include "trees/growth/parameters.h"
-#include "trees/tree.h"
+// Tubes -> bark.
+#include "trees/growth/tube.h"
 
 namespace kokage {
 
@@ -18,7 +17,7 @@ struct BarkPlace {
 /// tells whether it is a closed manifold and gives its normals. uvs: u counts a whole number of texture tiles around
 /// the branch, v runs along it at the same scale, so that the texture is not stretched. Returns the number of bark
 /// patches; appends to the part, and to `places` (where it is given) each patch's place.
-std::uint32_t make_bark(const Skeleton& skeleton, const GrowthParameters& parameters, TreePart& part,
+std::uint32_t make_bark(const std::vector<Tube>& tubes, const GrowthParameters& parameters, TreePart& part,
                         std::vector<BarkPlace>* places = nullptr);
 
 } // namespace kokage

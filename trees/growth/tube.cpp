@@ -244,4 +244,14 @@ std::vector<Tube> make_tubes(const Skeleton& skeleton, const GrowthParameters& p
     return tubes;
 }
 
+void move_to_centre_lines(Skeleton& skeleton, const std::vector<Tube>& tubes) {
+    for (std::size_t i = 0; i < skeleton.branches.size(); ++i) {
+        Branch& branch = skeleton.branches[i];
+        for (std::size_t n = branch.parent >= 0 ? 1 : 0; n < branch.nodes.size(); ++n)
+            branch.nodes[n].position = joint_on(tubes[i].rings, branch.nodes[n].position).centre;
+        if (branch.parent >= 0)
+            branch.nodes[0].position = tubes[i].joint.centre;
+    }
+}
+
 } // namespace kokage

@@ -31,4 +31,8 @@ struct Tube {
 /// branch.
 std::vector<Tube> make_tubes(const Skeleton& skeleton, const GrowthParameters& parameters);
 
+/// Moves every node to the nearest place on its tube's centre line, which is smoother than the skeleton, so that
+/// branching points lie where the bark has them. What was one place stays one.
+void move_to_centre_lines(Skeleton& skeleton, const std::vector<Tube>& tubes);
+
 } // namespace kokage
