@@ -152,10 +152,13 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
     std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
         return thickness(a) != thickness(b) ? thickness(a) > thickness(b) : place(a) < place(b);
     });
+    // Hanging boughs may reach lower than the trunk, and have more bark.
+    const auto volume = [&](std::size_t piece) {
+        return pieces[piece].area * (tubes[piece] ? double(tubes[piece]->base_radius_m) : pieces[piece].thickness);
+    };
     auto trunk = order.end();
     for (auto i = order.begin(); i != order.end(); ++i)
-        if (pieces[*i].low.y <= low + 0.1 * (high - low) &&
-            (trunk == order.end() || pieces[*i].area > pieces[*trunk].area))
+        if (pieces[*i].low.y <= 0.5 * (low + high) && (trunk == order.end() || volume(*i) > volume(*trunk)))
             trunk = i;
     if (trunk != order.end())
         std::rotate(order.begin(), trunk, trunk + 1);
@@ -178,6 +181,7 @@ class PieceJoiner {
     void join_all() {
         constexpr int kMostRounds = 64;
         std::vector<std::size_t> pending = joining_order(mesh_.pieces(), tubes_, low_, high_);
+        ground_ = mesh_.pieces()[pending.front()].low.y;
         join(pending.front());
         pending.erase(pending.begin());
         for (int round = 0; round < kMostRounds; ++round)
@@ -188,7 +192,7 @@ class PieceJoiner {
     }
 
   private:
-    bool near_ground(const BarkPiece& piece) const { return piece.low.y <= low_ + 0.1 * (high_ - low_); }
+    bool near_ground(const BarkPiece& piece) const { return piece.low.y <= ground_ + 0.1 * (high_ - low_); }
 
     bool join_on_axis(std::size_t piece) {
         if (!tubes_[piece])
@@ -239,6 +243,7 @@ class PieceJoiner {
     StandingWood wood_;
     std::vector<std::optional<TubeAxis>> tubes_;
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
+    double ground_ = 0; ///< where the trunk begins
 };
 
 } // namespace

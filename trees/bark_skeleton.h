@@ -16,8 +16,8 @@ struct BarkSkeleton {
 /// Each connected piece of bark is thinned to an axis tree: level sets of the distance along the surface from its base,
 /// each level's pieces at their centroid (Verroust and Lazarus 1999). Pieces are then joined, thick before thin, each
 /// at its point that reaches deepest into thicker wood. At a fork the thicker limb (the longer among about equal ones)
-/// goes on; the others are of a higher order. The trunk is the piece with the largest surface that reaches near the
-/// ground.
+/// goes on; the others are of a higher order. The trunk is the piece with the largest volume that reaches into
+/// the lower half.
 BarkSkeleton skeleton_from_bark(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles);
 
 } // namespace kokage
