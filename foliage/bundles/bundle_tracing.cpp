@@ -3,6 +3,7 @@
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
+#include "foliage/bundles/line_links.h"
 
 #include <algorithm>
 #include <cmath>
@@ -45,96 +46,6 @@ void store_open(const Facets& facets, const RasterScratch& raster, std::size_t r
     }
 }
 
-/// A side, and whether it is the inside of wood.
-struct FacingSide {
-    static constexpr std::uint32_t kInsideWood = 0x80000000u;
-    std::uint32_t value;
-    Side side() const { return value & ~kInsideWood; }
-    bool inside_wood() const { return (value & kInsideWood) != 0; }
-};
-
-/// Which side of a patch looks to the near and to the far end of lines of one direction.
-struct FaceSides {
-    FacingSide near_side, far_side;
-};
-
-/// For every face.
-void face_sides(const Facets& facets, const glm::vec3& direction, std::vector<FaceSides>& sides) {
-    sides.resize(facets.face_count());
-    for (std::uint32_t f = 0; f < facets.leaf_facet_count; ++f) {
-        const Side front = 2 * facets.facets[f].patch;
-        const bool front_is_near = glm::dot(facets.facets[f].normal, direction) < 0;
-        sides[f] = {{front + !front_is_near}, {front + front_is_near}};
-    }
-    for (std::uint32_t f = facets.leaf_facet_count, face = f; f < facets.facets.size(); ++f, face += 2) {
-        const FacingSide front{2 * facets.facets[f].patch}, inside{(front.value + 1) | FacingSide::kInsideWood};
-        sides[face] = {front, inside};
-        sides[face + 1] = {inside, front};
-    }
-}
-
-struct Pair {
-    std::uint32_t a, b; ///< the two sides that face each other: FacingSide::value
-};
-
-struct DirectionLinks {
-    UninitializedVector<Pair> pairs;
-    std::vector<Links::GroundLink> ground;
-};
-
-/// Where pixel (0, 0)'s line meets the ground, and how that moves from pixel to pixel.
-struct GroundProjection {
-    glm::vec2 origin, along_u, along_v;
-    bool valid = false;
-};
-
-GroundProjection project_to_ground(const GroundGrid& grid, const Projection& projection) {
-    const glm::vec3& d = projection.direction;
-    if (d.y > -1e-3f) // lines this flat leave the grid
-        return {};
-    auto point = [&](float u, float v) {
-        const glm::vec3 on_plane =
-            ((u - projection.offset.x) * projection.u_axis + (v - projection.offset.y) * projection.v_axis) /
-            projection.pixels_per_unit;
-        const glm::vec3 hit = on_plane + d * ((grid.height - on_plane.y) / d.y);
-        return glm::vec2(hit.x, hit.z);
-    };
-    const glm::vec2 origin = point(0, 0);
-    return {origin, point(1, 0) - origin, point(0, 1) - origin, true};
-}
-
-/// What the walls inside wood see of each other is nobody's light and is left out; leaves that reach into the wood
-/// (most do, at their stalk) see the dark wall.
-void collect_links(const RasterScratch& raster, const Projection& projection, const std::vector<FaceSides>& sides,
-                   std::uint32_t face_mask, const std::optional<GroundGrid>& grid, std::uint32_t phase,
-                   DirectionLinks& out) {
-    const GroundProjection on_ground = grid ? project_to_ground(*grid, projection) : GroundProjection{};
-    out.pairs.resize(raster.fragment_count);
-    Pair* pair = out.pairs.data();
-    for (int y = 0; y < projection.height; ++y)
-        for (int x = 0; x < projection.width; ++x) {
-            const std::size_t pixel = std::size_t(y) * projection.width + x;
-            const std::uint32_t begin = raster.pixel_begin[pixel], end = raster.pixel_begin[pixel + 1];
-            if (begin == end)
-                continue;
-            FacingSide open = sides[raster.sorted_keys[begin] & face_mask].far_side;
-            for (std::uint32_t i = begin + 1; i < end; ++i) {
-                const FaceSides face = sides[raster.sorted_keys[i] & face_mask];
-                *pair = {open.value, face.near_side.value};
-                pair += !(open.inside_wood() && face.near_side.inside_wood());
-                open = face.far_side;
-            }
-            constexpr std::uint32_t stride = GroundGrid::kStride;
-            if (on_ground.valid && !open.inside_wood() && (std::uint32_t(x) + phase) % stride == 0 &&
-                (std::uint32_t(y) + phase / stride) % stride == 0) {
-                const glm::vec2 hit = on_ground.origin + float(x) * on_ground.along_u + float(y) * on_ground.along_v;
-                if (const int texel = grid->texel_at(hit.x, hit.y); texel >= 0)
-                    out.ground.push_back({open.side(), std::uint32_t(texel)});
-            }
-        }
-    out.pairs.resize(std::size_t(pair - out.pairs.data()));
-}
-
 /// Rows are found by 32-bit numbers: 17 GB of links.
 void require_countable(std::uint64_t links) {
     if (links > 0xffffffffull)
@@ -154,16 +65,17 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     const std::size_t bounds[3] = {0, half, directions.size()};
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         cursor[h].assign(side_count, 0);
+        std::uint32_t* count = cursor[h].data();
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
-            for (const Pair& pair : directions[d].pairs)
-                for (const FacingSide facing : {FacingSide{pair.a}, FacingSide{pair.b}})
-                    cursor[h][facing.side()] += !facing.inside_wood();
+            for (const auto* sides : {&directions[d].a, &directions[d].b})
+                for (const std::uint32_t value : *sides)
+                    count[FacingSide{value}.side()] += !FacingSide{value}.inside_wood();
     });
     links.begin.resize(side_count + 1);
     links.middle.resize(side_count);
     std::uint64_t all = side_count;
     for (const DirectionLinks& direction : directions)
-        all += 2 * direction.pairs.size();
+        all += 2 * direction.a.size();
     require_countable(all);
     std::uint32_t running = 0;
     std::vector<Side> lonely;
@@ -180,6 +92,21 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
     }
     links.begin[side_count] = running;
     links.neighbours.resize(running);
+    parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
+        Side* neighbours = links.neighbours.data();
+        std::uint32_t* next = cursor[h].data();
+        for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d) {
+            const DirectionLinks& direction = directions[d];
+            for (std::size_t i = 0; i < direction.a.size(); ++i) {
+                // Without branches: what the inside of wood is given is overwritten below.
+                const FacingSide a{direction.a[i]}, b{direction.b[i]};
+                neighbours[next[a.side()]] = b.side();
+                next[a.side()] += !a.inside_wood();
+                neighbours[next[b.side()]] = a.side();
+                next[b.side()] += !b.inside_wood();
+            }
+        }
+    });
     // The inside of wood is as dim as a second reflection of its outside. Another side that meets nobody (hidden in
     // wood, or all its lines end outside) takes what its open share leaves from the patch before it, its neighbour on
     // the branch. Rows stay stochastic.
@@ -188,16 +115,6 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
                                               : side >= 2       ? side - 2
                                                           : std::min<Side>(side + 2, Side(side_count) - 2 + side % 2);
     }
-    parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
-        for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d)
-            for (const Pair& pair : directions[d].pairs) {
-                const FacingSide a{pair.a}, b{pair.b};
-                if (!a.inside_wood())
-                    links.neighbours[cursor[h][a.side()]++] = b.side();
-                if (!b.inside_wood())
-                    links.neighbours[cursor[h][b.side()]++] = a.side();
-            }
-    });
 }
 
 OpenFractions make_open(std::size_t directions, const Facets& facets, bool both) {
@@ -243,8 +160,8 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
                 link_density = pixel_density(facets, settings.link_pixels);
     transport.sky_open.pixels_per_area = sky_density * sky_density;
     transport.link_open.pixels_per_area = link_density * link_density;
-    const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
 
+    const LeafPlanes leaves = leaf_planes(facets);
     std::vector<DirectionLinks> collected(linked);
     std::vector<std::size_t> fragments(skies + linked, 0);
     transport.links.ground_pixel_area.resize(linked);
@@ -258,10 +175,10 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
             const Projection projection = fit_projection(facets, direction, link_density, jitter);
             draw_fragments(scene, facets, projection, raster);
             store_open(facets, raster, task, transport.link_open, true);
-            thread_local std::vector<FaceSides> sides;
-            face_sides(facets, direction, sides);
+            thread_local std::vector<std::uint32_t> sides;
+            near_sides(facets, leaves, direction, sides);
             const auto phase = std::uint32_t(hash64(settings.seed * 977 + task));
-            collect_links(raster, projection, sides, face_mask, transport.ground, phase, collected[task]);
+            collect_links(raster, facets, projection, sides, transport.ground, phase, collected[task]);
             transport.links.ground_pixel_area[task] =
                 float(GroundGrid::kStride * GroundGrid::kStride) / (link_density * link_density);
         } else {

@@ -1,10 +1,10 @@
 #pragma once
 // Who sees whom: line bundles drawn once, kept as open fractions (ends of lines) and links (neighbours on lines).
 #include "common/services/progress.h"
-#include "common/services/uninitialized_vector.h"
 #include "foliage/bundles/facets.h"
 #include "foliage/bundles/line_directions.h"
 #include "foliage/bundles/line_raster.h"
+#include "foliage/bundles/links.h"
 #include "foliage/bundles/ray_links.h"
 
 #include <limits>
@@ -24,40 +24,7 @@ struct OpenFractions {
     const std::uint8_t* far_row(std::size_t direction) const { return far_end.data() + direction * facet_count; }
 };
 
-/// A square of ground texels around the tree, lit and shaded by it; beyond it the ground is taken to lie open.
-struct GroundGrid {
-    static constexpr int kSize = 32;
-    static constexpr std::uint32_t kTexels = kSize * kSize;
-    static constexpr int kStride = 2; ///< every 2nd pixel in u and v is followed to the ground
-    float height = 0;                 ///< scaled y
-    glm::vec2 low{0.f};               ///< scaled x, z of the corner
-    float texel = 1;                  ///< scaled side of a texel
-    int texel_at(float x, float z) const {
-        const float i = (x - low.x) / texel, j = (z - low.y) / texel;
-        return i >= 0 && j >= 0 && i < kSize && j < kSize ? int(j) * kSize + int(i) : -1;
-    }
-};
 GroundGrid make_ground_grid(const Facets& facets, float height_m);
-
-/// Sides are numbered 2 x patch (front) and 2 x patch + 1 (back).
-using Side = std::uint32_t;
-
-/// The neighbours of every side on all lines, one entry a line, in compressed rows; and its ends on the ground.
-/// Row of side s: entries [begin[s], begin[s+1]), of the first half of the directions before middle[s], of the second
-/// after.
-struct Links {
-    std::vector<std::uint32_t> begin, middle;
-    UninitializedVector<Side> neighbours;
-    /// Lines that end on a texel of the ground, one in kStride^2, direction by direction.
-    struct GroundLink {
-        Side side;
-        std::uint32_t texel;
-    };
-    std::vector<GroundLink> ground;
-    std::vector<std::uint32_t> ground_begin; ///< of each direction, + 1
-    std::vector<float>
-        ground_pixel_area; ///< of each direction: scaled area that one ground link stands for, across the line
-};
 
 struct BundleSettings {
     int sky_directions = 24;  ///< lines that only show their ends

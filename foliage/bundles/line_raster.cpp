@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
 #include <utility>
 
 HWY_BEFORE_NAMESPACE();
@@ -217,7 +218,8 @@ Projection fit_projection(const Facets& facets, const glm::vec3& direction, floa
     };
     const glm::vec2 u = range(projection.u_axis), v = range(projection.v_axis), w = range(direction);
     projection.offset = glm::vec2(1 - u.x, 1 - v.x) + jitter;
-    projection.width = int(std::ceil(u.y - u.x)) + 3;
+    constexpr int group = FragmentLists::kGroup;
+    projection.width = (int(std::ceil(u.y - u.x)) + 3 + group - 1) / group * group;
     projection.height = int(std::ceil(v.y - v.x)) + 3;
     const float margin = 2 + 1e-2f * (w.y - w.x);
     projection.depth_low = w.x - margin;
@@ -248,40 +250,11 @@ void draw_fragments(const PatchScene& scene, const Facets& facets, const Project
     const std::size_t pixels = std::size_t(projection.width) * std::size_t(projection.height);
     HWY_DYNAMIC_DISPATCH(DrawFragments)(scene, facets, projection, scratch);
 
-    // Counting sort by pixel; pixel_begin[p + 1] holds the count of p and becomes the cursor of p, which ends at begin
-    // of p + 1.
-    scratch.pixel_begin.assign(pixels + 1, 0);
-    std::uint32_t* count_of = scratch.pixel_begin.data() + 1;
-    for (std::size_t f = 0; f < scratch.fragment_count; ++f)
-        ++count_of[scratch.fragment_pixel[f]];
-    std::uint32_t running = 0;
-    for (std::size_t p = 0; p < pixels; ++p)
-        running += std::exchange(count_of[p], running);
-    scratch.sorted_keys.resize(scratch.fragment_count);
-    std::uint32_t *cursor = count_of, *sorted = scratch.sorted_keys.data();
-    for (std::size_t f = 0; f < scratch.fragment_count; ++f)
-        sorted[cursor[scratch.fragment_pixel[f]]++] = scratch.fragment_key[f];
-
     scratch.near_count.assign(facets.face_count(), 0);
     scratch.far_count.assign(facets.face_count(), 0);
-    std::uint32_t *near_count = scratch.near_count.data(), *far_count = scratch.far_count.data();
-    const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
-    std::uint32_t first = 0;
-    for (std::size_t p = 0; p < pixels; ++p) {
-        const std::uint32_t end = count_of[p];
-        if (first == end)
-            continue;
-        for (std::uint32_t i = first + 1; i < end; ++i) { // a pixel holds a few fragments: insertion sort
-            const std::uint32_t key = sorted[i];
-            std::uint32_t j = i;
-            for (; j > first && sorted[j - 1] > key; --j)
-                sorted[j] = sorted[j - 1];
-            sorted[j] = key;
-        }
-        ++near_count[sorted[first] & face_mask];
-        ++far_count[sorted[end - 1] & face_mask];
-        first = end;
-    }
+    sort_fragments(pixels, std::span(scratch.fragment_pixel).first(scratch.fragment_count),
+                   std::span(scratch.fragment_key).first(scratch.fragment_count), (1u << face_bits(facets)) - 1,
+                   scratch.lists, scratch.near_count, scratch.far_count);
 }
 
 } // namespace kokage::bundles

@@ -10,6 +10,7 @@
 // Two products, both exact per pixel: the nearest and farthest face (KeyBuffers), or every face (FragmentLists).
 // A key is depth (high bits) | face (low bits), so that keys sort by depth.
 #include "foliage/bundles/facets.h"
+#include "foliage/bundles/fragment_lists.h"
 
 #include <cstdint>
 #include <vector>
@@ -21,7 +22,7 @@ struct Projection {
     glm::vec3 u_axis, v_axis, direction; ///< orthonormal, u x v = -direction
     float pixels_per_unit = 1;
     glm::vec2 offset{0.f}; ///< in pixels; jitters the grid and moves everything to positive coordinates
-    int width = 0, height = 0;
+    int width = 0, height = 0; ///< the width is a multiple of FragmentLists::kGroup
     float depth_low = 0, depth_high = 1; ///< in pixels along the direction
 };
 
@@ -41,8 +42,7 @@ struct RasterScratch {
     std::vector<std::uint32_t> near_count, far_count; ///< of every face: pixels where it is the nearest / farthest one
     // Fragment lists
     std::vector<std::uint32_t> fragment_pixel, fragment_key; ///< in drawing order
-    std::vector<std::uint32_t> pixel_begin;                  ///< width x height + 1
-    std::vector<std::uint32_t> sorted_keys;                  ///< by pixel, then by depth
+    FragmentLists lists;                                     ///< of width x height pixels
     std::size_t fragment_count = 0;
 };
 
@@ -50,8 +50,7 @@ struct RasterScratch {
 void draw_ends(const PatchScene& scene, const Facets& facets, const Projection& projection, bool both,
                RasterScratch& scratch);
 
-/// Every solid fragment of each pixel in order of depth: scratch.pixel_begin and scratch.sorted_keys; and the counts as
-/// above.
+/// Every solid fragment of each pixel in order of depth, scratch.lists; and the counts as above.
 void draw_fragments(const PatchScene& scene, const Facets& facets, const Projection& projection,
                     RasterScratch& scratch);
 

@@ -146,8 +146,7 @@ void expect_same_as_twin(const PatchScene& scene, const glm::vec3& direction, fl
             std::sort(fragments.begin(), fragments.end(),
                       [](const TwinFragment& a, const TwinFragment& b) { return a.depth < b.depth; });
             const std::size_t pixel = std::size_t(y) * std::size_t(projection.width) + std::size_t(x);
-            const std::uint32_t begin = lists.pixel_begin[pixel], end = lists.pixel_begin[pixel + 1];
-            ASSERT_EQ(end - begin, fragments.size()) << x << " " << y;
+            ASSERT_EQ(lists.lists.count(pixel), fragments.size()) << x << " " << y;
             bool order_known = true;
             for (std::size_t i = 1; i < fragments.size(); ++i)
                 order_known &=
@@ -157,7 +156,7 @@ void expect_same_as_twin(const PatchScene& scene, const glm::vec3& direction, fl
                 continue;
             }
             for (std::size_t i = 0; i < fragments.size(); ++i)
-                ASSERT_EQ(lists.sorted_keys[begin + i] & face_mask, fragments[i].face) << x << " " << y << " " << i;
+                ASSERT_EQ(lists.lists.key(pixel, std::uint32_t(i)) & face_mask, fragments[i].face) << x << " " << y << " " << i;
             if (fragments.empty()) {
                 ASSERT_EQ(ends.near_keys[pixel], kNoKey);
                 ASSERT_EQ(ends.far_keys[pixel], 0u);
