@@ -22,28 +22,29 @@ glm::vec2 grid_jitter(std::uint64_t seed, std::size_t direction) {
     return {u, random.uniform()};
 }
 
+/// Without branches, so that a compiler makes vectors of it.
 std::uint8_t fraction(std::uint32_t open, std::uint32_t of) {
-    return of == 0 ? OpenFractions::kUnseen : std::uint8_t(float(open) / float(of) * 254 + 0.5f);
+    const std::int32_t share = std::int32_t(float(std::int32_t(open)) / float(std::max(std::int32_t(of), 1)) * 254 + 0.5f);
+    return std::uint8_t(of == 0 ? OpenFractions::kUnseen : share);
 }
 
-/// Turns a raster's counts into one row of open fractions.
-void store_open(const Facets& facets, const RasterScratch& raster, std::size_t row, OpenFractions& open, bool both) {
-    const std::uint32_t leaves = facets.leaf_facet_count;
-    std::uint8_t* near_row = open.near_end.data() + row * open.facet_count;
-    std::uint8_t* far_row = both ? open.far_end.data() + row * open.facet_count : nullptr;
-    for (std::uint32_t f = 0; f < leaves; ++f) {
-        near_row[f] = fraction(raster.near_count[f], raster.fragments[f]);
-        if (both)
-            far_row[f] = fraction(raster.far_count[f], raster.fragments[f]);
-    }
-    for (std::uint32_t f = leaves; f < open.facet_count; ++f) {
-        const std::uint32_t face =
-            leaves + 2 * (f - leaves); // the front looks to the near end; face + 1: to the far end
-        const std::uint32_t of = raster.fragments[face] + raster.fragments[face + 1];
-        near_row[f] = fraction(raster.near_count[face], of);
-        if (both)
-            far_row[f] = fraction(raster.far_count[face + 1], of);
-    }
+/// Turns a raster's counts into one row of open fractions of the near (`end` = 0) or the far end (1).
+void store_open(const Facets& facets, const std::vector<std::uint32_t>& fragments,
+                const std::vector<std::uint32_t>& counts, std::size_t end, std::uint8_t* row) {
+    const std::size_t leaves = facets.leaf_facet_count, all = facets.facets.size();
+    const std::uint32_t *of = fragments.data(), *open = counts.data();
+    for (std::size_t f = 0; f < leaves; ++f)
+        row[f] = fraction(open[f], of[f]);
+    // The front of a face looks to the near end; face + 1: to the far end.
+    for (std::size_t f = leaves, face = leaves; f < all; ++f, face += 2)
+        row[f] = fraction(open[face + end], of[face] + of[face + 1]);
+}
+
+void store_open(const Facets& facets, const RasterScratch& raster, std::size_t direction, OpenFractions& open) {
+    const std::size_t row = direction * open.facet_count;
+    store_open(facets, raster.fragments, raster.near_count, 0, open.near_end.data() + row);
+    if (!open.far_end.empty())
+        store_open(facets, raster.fragments, raster.far_count, 1, open.far_end.data() + row);
 }
 
 /// Rows are found by 32-bit numbers: 17 GB of links.
@@ -174,7 +175,7 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
             const glm::vec3& direction = transport.link_lines.directions[task];
             const Projection projection = fit_projection(facets, direction, link_density, jitter);
             draw_fragments(scene, facets, projection, raster);
-            store_open(facets, raster, task, transport.link_open, true);
+            store_open(facets, raster, task, transport.link_open);
             thread_local std::vector<std::uint32_t> sides;
             near_sides(facets, leaves, direction, sides);
             const auto phase = std::uint32_t(hash64(settings.seed * 977 + task));
@@ -184,7 +185,7 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
         } else {
             const glm::vec3& direction = transport.sky_lines.directions[task - linked];
             draw_ends(scene, facets, fit_projection(facets, direction, sky_density, jitter), true, raster);
-            store_open(facets, raster, task - linked, transport.sky_open, true);
+            store_open(facets, raster, task - linked, transport.sky_open);
         }
         for (std::uint32_t count : raster.fragments)
             fragments[task] += count;
@@ -213,7 +214,7 @@ BeamVisibility trace_beams(const PatchScene& scene, const Facets& facets, const 
         const Projection projection =
             fit_projection(facets, -directions_to_light[beam], density, grid_jitter(seed, beam));
         draw_ends(scene, facets, projection, false, raster);
-        store_open(facets, raster, beam, visibility.open, false);
+        store_open(facets, raster, beam, visibility.open);
         if (!ground)
             return;
         std::vector<float>& shadow = visibility.ground_shadow[beam];

@@ -28,8 +28,9 @@ struct MaskTest {
 };
 
 /// Texture coordinates over the picture: moving a pixel moves along the plane, (u_axis + direction slope_u) / density.
-MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, std::size_t index,
-                      const Projection& projection, const LonePolygon& polygon) {
+MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
+                      const LonePolygon& polygon) {
+    const std::size_t index = polygon.index;
     const TextureMap& map = group.texture[index];
     const glm::vec3 along_u = (projection.u_axis + projection.direction * polygon.slope_u) / projection.pixels_per_unit;
     const glm::vec3 along_v = (projection.v_axis + projection.direction * polygon.slope_v) / projection.pixels_per_unit;
@@ -63,36 +64,56 @@ void DrawLone(const LonePolygon& polygon, const MaskTest* test, const Projection
     }
 }
 
+/// Draws the polygons from `first` on, as many as there are lanes.
 template <int Corners, class MakeRoom>
-void DrawGroup(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
-               std::uint32_t face_mask, FragmentBuffer& buffer, std::uint32_t* fragments, MakeRoom&& make_room) {
+HWY_INLINE void DrawProjected(const PatchScene& scene, const PolygonGroup& group,
+                              const ProjectedPolygons<Corners>& polygons, std::size_t first,
+                              const Projection& projection, std::uint32_t face_mask, FragmentBuffer& buffer,
+                              std::uint32_t* fragments, MakeRoom&& make_room) {
     const FloatTag d;
-    const std::size_t lanes = hn::Lanes(d);
     const DepthScale depths{projection.depth_low,
                             2147483000.f / std::max(projection.depth_high - projection.depth_low, 1e-20f)};
     PolygonBatch<Corners> batch;
-    for (std::size_t first = 0; first < group.count; first += lanes) {
-        if (!ProjectBatch<Corners>(group, first, projection, depths, batch))
-            continue;
-        auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(kMostBatchRows))),
-                            hn::Gt(batch.columns, hn::Set(d, float(kMostBatchColumns))));
-        alone = group.masked ? batch.alive : hn::And(alone, batch.alive);
-        if (HWY_LIKELY(hn::AllFalse(d, alone))) {
-            DrawBatch<Corners>(batch, batch.alive, projection, face_mask, buffer, fragments);
-        } else {
-            DrawBatch<Corners>(batch, hn::AndNot(alone, batch.alive), projection, face_mask, buffer, fragments);
-            make_room();
-            ForEachLane<Corners>(batch, alone, [&](const LonePolygon& polygon, std::size_t lane) {
-                if (group.masked) {
-                    const MaskTest test = MakeMaskTest(scene, group, first + lane, projection, polygon);
-                    DrawLone(polygon, &test, projection, face_mask, buffer, fragments, make_room);
-                } else {
-                    DrawLone(polygon, nullptr, projection, face_mask, buffer, fragments, make_room);
-                }
-            });
-        }
+    SetUpBatch<Corners>(polygons, first, depths, batch);
+    auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(kMostBatchRows))),
+                        hn::Gt(batch.columns, hn::Set(d, float(kMostBatchColumns))));
+    alone = group.masked ? batch.alive : hn::And(alone, batch.alive);
+    if (HWY_LIKELY(hn::AllFalse(d, alone))) {
+        DrawBatch<Corners>(batch, batch.alive, projection, face_mask, buffer, fragments);
+    } else {
+        DrawBatch<Corners>(batch, hn::AndNot(alone, batch.alive), projection, face_mask, buffer, fragments);
         make_room();
+        ForEachLane<Corners>(batch, alone, [&](const LonePolygon& polygon) {
+            if (group.masked) {
+                const MaskTest test = MakeMaskTest(scene, group, projection, polygon);
+                DrawLone(polygon, &test, projection, face_mask, buffer, fragments, make_room);
+            } else {
+                DrawLone(polygon, nullptr, projection, face_mask, buffer, fragments, make_room);
+            }
+        });
     }
+    make_room();
+}
+
+template <int Corners, class MakeRoom>
+void DrawGroup(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
+               std::uint32_t face_mask, FragmentBuffer& buffer, std::uint32_t* fragments, MakeRoom&& make_room) {
+    const std::size_t lanes = hn::Lanes(FloatTag());
+    ProjectedPolygons<Corners> polygons;
+    auto draw = [&](std::size_t first) {
+        DrawProjected(scene, group, polygons, first, projection, face_mask, buffer, fragments, make_room);
+    };
+    for (std::size_t first = 0; first < group.count; first += lanes) {
+        ProjectPolygons<Corners>(group, first, projection, polygons);
+        if (polygons.count + lanes <= polygons.kRoom)
+            continue;
+        std::size_t done = 0;
+        for (; done + lanes <= polygons.count; done += lanes)
+            draw(done);
+        RemoveFirst(done, polygons);
+    }
+    for (std::size_t first = 0; first < polygons.count; first += lanes)
+        draw(first);
 }
 
 /// Fills the buffer with the fragments of all facets and counts them by face. make_room() is called whenever up to
@@ -170,6 +191,24 @@ void DrawFragments(const PatchScene& scene, const Facets& facets, const Projecti
     scratch.fragment_count = buffer.count;
 }
 
+/// Counts at which pixels a face is the nearest / farthest one. `pixels`: a multiple of FragmentLists::kGroup.
+void CountEnds(const std::uint32_t* keys, std::size_t pixels, std::uint32_t empty, std::uint32_t face_mask,
+               std::uint32_t* counts) {
+    const hn::CappedTag<std::uint32_t, FragmentLists::kGroup> d;
+    const std::size_t lanes = hn::Lanes(d);
+    HWY_ALIGN std::uint32_t faces[FragmentLists::kGroup] = {};
+    for (std::size_t pixel = 0; pixel < pixels; pixel += lanes) {
+        const auto key = hn::LoadU(d, keys + pixel);
+        const auto drawn = hn::Ne(key, hn::Set(d, empty));
+        if (hn::AllFalse(d, drawn))
+            continue;
+        hn::Store(hn::Compress(hn::And(key, hn::Set(d, face_mask)), drawn), d, faces);
+        const std::size_t count = hn::CountTrue(d, drawn);
+        for (std::size_t i = 0; i < count; ++i)
+            ++counts[faces[i]];
+    }
+}
+
 } // namespace kokage::bundles::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -178,19 +217,12 @@ namespace kokage::bundles {
 
 HWY_EXPORT(DrawEnds);
 HWY_EXPORT(DrawFragments);
+HWY_EXPORT(CountEnds);
 
 namespace {
 
 void prepare(const Facets& facets, RasterScratch& scratch) {
     scratch.fragments.assign(facets.face_count(), 0);
-}
-
-/// Counts at which pixels a face is the nearest / farthest one.
-void count_ends(const std::vector<std::uint32_t>& keys, std::size_t pixels, std::uint32_t empty,
-                std::uint32_t face_mask, std::vector<std::uint32_t>& counts) {
-    for (std::size_t i = 0; i < pixels; ++i)
-        if (keys[i] != empty)
-            ++counts[keys[i] & face_mask];
 }
 
 } // namespace
@@ -236,12 +268,13 @@ void draw_ends(const PatchScene& scene, const Facets& facets, const Projection& 
         scratch.far_keys.assign(pixels, 0);
     HWY_DYNAMIC_DISPATCH(DrawEnds)(scene, facets, projection, both, scratch);
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
-    scratch.near_count.assign(facets.face_count(), 0);
-    count_ends(scratch.near_keys, pixels, kNoKey, face_mask, scratch.near_count);
-    if (both) {
-        scratch.far_count.assign(facets.face_count(), 0);
-        count_ends(scratch.far_keys, pixels, 0, face_mask, scratch.far_count);
-    }
+    auto count = [&](const std::vector<std::uint32_t>& keys, std::uint32_t empty, std::vector<std::uint32_t>& counts) {
+        counts.assign(facets.face_count(), 0);
+        HWY_DYNAMIC_DISPATCH(CountEnds)(keys.data(), pixels, empty, face_mask, counts.data());
+    };
+    count(scratch.near_keys, kNoKey, scratch.near_count);
+    if (both)
+        count(scratch.far_keys, 0, scratch.far_count);
 }
 
 void draw_fragments(const PatchScene& scene, const Facets& facets, const Projection& projection,
