@@ -28,9 +28,8 @@ struct MaskTest {
 };
 
 /// Texture coordinates over the picture: moving a pixel moves along the plane, (u_axis + direction slope_u) / density.
-MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
-                      const LonePolygon& polygon) {
-    const std::size_t index = polygon.index;
+MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, std::size_t index,
+                      const Projection& projection, const LonePolygon& polygon) {
     const TextureMap& map = group.texture[index];
     const glm::vec3 along_u = (projection.u_axis + projection.direction * polygon.slope_u) / projection.pixels_per_unit;
     const glm::vec3 along_v = (projection.v_axis + projection.direction * polygon.slope_v) / projection.pixels_per_unit;
@@ -64,56 +63,36 @@ void DrawLone(const LonePolygon& polygon, const MaskTest* test, const Projection
     }
 }
 
-/// Draws the polygons from `first` on, as many as there are lanes.
-template <int Corners, class MakeRoom>
-HWY_INLINE void DrawProjected(const PatchScene& scene, const PolygonGroup& group,
-                              const ProjectedPolygons<Corners>& polygons, std::size_t first,
-                              const Projection& projection, std::uint32_t face_mask, FragmentBuffer& buffer,
-                              std::uint32_t* fragments, MakeRoom&& make_room) {
-    const FloatTag d;
-    const DepthScale depths{projection.depth_low,
-                            2147483000.f / std::max(projection.depth_high - projection.depth_low, 1e-20f)};
-    PolygonBatch<Corners> batch;
-    SetUpBatch<Corners>(polygons, first, depths, batch);
-    auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(kMostBatchRows))),
-                        hn::Gt(batch.columns, hn::Set(d, float(kMostBatchColumns))));
-    alone = group.masked ? batch.alive : hn::And(alone, batch.alive);
-    if (HWY_LIKELY(hn::AllFalse(d, alone))) {
-        DrawBatch<Corners>(batch, batch.alive, projection, face_mask, buffer, fragments);
-    } else {
-        DrawBatch<Corners>(batch, hn::AndNot(alone, batch.alive), projection, face_mask, buffer, fragments);
-        make_room();
-        ForEachLane<Corners>(batch, alone, [&](const LonePolygon& polygon) {
-            if (group.masked) {
-                const MaskTest test = MakeMaskTest(scene, group, projection, polygon);
-                DrawLone(polygon, &test, projection, face_mask, buffer, fragments, make_room);
-            } else {
-                DrawLone(polygon, nullptr, projection, face_mask, buffer, fragments, make_room);
-            }
-        });
-    }
-    make_room();
-}
-
 template <int Corners, class MakeRoom>
 void DrawGroup(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
                std::uint32_t face_mask, FragmentBuffer& buffer, std::uint32_t* fragments, MakeRoom&& make_room) {
-    const std::size_t lanes = hn::Lanes(FloatTag());
-    ProjectedPolygons<Corners> polygons;
-    auto draw = [&](std::size_t first) {
-        DrawProjected(scene, group, polygons, first, projection, face_mask, buffer, fragments, make_room);
-    };
+    const FloatTag d;
+    const std::size_t lanes = hn::Lanes(d);
+    const DepthScale depths{projection.depth_low,
+                            2147483000.f / std::max(projection.depth_high - projection.depth_low, 1e-20f)};
+    PolygonBatch<Corners> batch;
     for (std::size_t first = 0; first < group.count; first += lanes) {
-        ProjectPolygons<Corners>(group, first, projection, polygons);
-        if (polygons.count + lanes <= polygons.kRoom)
+        if (!ProjectBatch<Corners>(group, first, projection, depths, batch))
             continue;
-        std::size_t done = 0;
-        for (; done + lanes <= polygons.count; done += lanes)
-            draw(done);
-        RemoveFirst(done, polygons);
+        auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(kMostBatchRows))),
+                            hn::Gt(batch.columns, hn::Set(d, float(kMostBatchColumns))));
+        alone = group.masked ? batch.alive : hn::And(alone, batch.alive);
+        if (HWY_LIKELY(hn::AllFalse(d, alone))) {
+            DrawBatch<Corners>(batch, batch.alive, projection, face_mask, buffer, fragments);
+        } else {
+            DrawBatch<Corners>(batch, hn::AndNot(alone, batch.alive), projection, face_mask, buffer, fragments);
+            make_room();
+            ForEachLane<Corners>(batch, alone, [&](const LonePolygon& polygon, std::size_t lane) {
+                if (group.masked) {
+                    const MaskTest test = MakeMaskTest(scene, group, first + lane, projection, polygon);
+                    DrawLone(polygon, &test, projection, face_mask, buffer, fragments, make_room);
+                } else {
+                    DrawLone(polygon, nullptr, projection, face_mask, buffer, fragments, make_room);
+                }
+            });
+        }
+        make_room();
     }
-    for (std::size_t first = 0; first < polygons.count; first += lanes)
-        draw(first);
 }
 
 /// Fills the buffer with the fragments of all facets and counts them by face. make_room() is called whenever up to

@@ -4,7 +4,6 @@
 
 #include <hwy/highway.h>
 
-#include <algorithm>
 #include <bit>
 
 #if defined(KOKAGE_POLYGON_BATCH_INL_H) == defined(HWY_TARGET_TOGGLE)
@@ -43,25 +42,27 @@ struct FragmentBuffer {
     std::size_t count = 0;
 };
 
-/// Polygons in the picture, those left out that can't cover a pixel: what a batch is filled from.
+/// Keys are a plane over the picture in fixed point, depth in the bits above the face's:
+/// key(x, y) = (key0 + (x - first_column) key_du + (y - first_row) key_dv) without its low bits | face.
+/// Arithmetic wraps, the result doesn't.
 template <int Corners>
-struct ProjectedPolygons {
-    static constexpr std::size_t kRoom = 128, kWithPadding = kRoom + kMostLanes;
-    HWY_ALIGN float u[Corners][kWithPadding], v[Corners][kWithPadding]; ///< of the corners, pixels
-    HWY_ALIGN float depth[kWithPadding];                                ///< of corner 0, pixels
-    HWY_ALIGN float normal_u[kWithPadding], normal_v[kWithPadding];     ///< normal along the picture's axes
-    HWY_ALIGN float facing[kWithPadding];                               ///< normal along the direction
-    HWY_ALIGN std::uint32_t face[kWithPadding];                         ///< PolygonGroup::face
-    HWY_ALIGN std::uint32_t index[kWithPadding];                        ///< in the group
-    std::size_t count = 0;
+struct PolygonBatch {
+    FloatVec u0, v0;                         ///< corner 0, pixels
+    FloatVec base[Corners], slope[Corners];  ///< lines of the edges, u = base + slope v
+    FloatMask left[Corners], right[Corners]; ///< on which side the edge lies; level edges on neither
+    FloatVec first_row, rows, first_column, columns;
+    FloatVec facing, slope_u, slope_v; ///< depth over the picture: a plane
+    KeyVec key0, key_du, key_dv, face;
+    FloatMask alive; ///< lanes that cover a row and a column of pixel centres and don't stand on edge
 };
 
-/// Projects polygons [first, first + lanes) of a group and adds those that cover a row and a column of pixel centres and
-/// don't stand on edge. There must be room for as many as there are lanes.
+/// Projects polygons [first, first + lanes) of a group, throws out those that can't cover a pixel, sets up edges and
+/// depths. False if none is left.
 template <int Corners>
-HWY_INLINE void ProjectPolygons(const PolygonGroup& group, std::size_t first, const Projection& projection,
-                                ProjectedPolygons<Corners>& out) {
+HWY_INLINE bool ProjectBatch(const PolygonGroup& group, std::size_t first, const Projection& projection,
+                             DepthScale depths, PolygonBatch<Corners>& batch) {
     const FloatTag d;
+    const IntTag di;
     const KeyTag dk;
     const float density = projection.pixels_per_unit;
     const glm::vec3 ua = projection.u_axis * density, va = projection.v_axis * density,
@@ -84,98 +85,32 @@ HWY_INLINE void ProjectPolygons(const PolygonGroup& group, std::size_t first, co
         if (k == 0)
             depth = dot(wa, x, y, z);
     }
-    auto kept = hn::And(hn::Lt(hn::Ceil(low_v), hn::Ceil(high_v)), hn::Lt(hn::Ceil(low_u), hn::Ceil(high_u)));
-    kept = hn::And(kept, hn::FirstN(d, group.count - first));
-    if (hn::AllFalse(d, kept))
-        return;
-    const auto nx = hn::LoadU(d, &group.normal_x[first]), ny = hn::LoadU(d, &group.normal_y[first]),
-               nz = hn::LoadU(d, &group.normal_z[first]);
-    const auto facing = dot(projection.direction, nx, ny, nz);
-    kept = hn::And(kept, hn::Gt(hn::Abs(facing), hn::Set(d, kLeastFacing)));
-    const auto add = [&](FloatVec value, float* to) { hn::StoreU(hn::Compress(value, kept), d, to + out.count); };
-    const auto add_key = [&](KeyVec value, std::uint32_t* to) {
-        hn::StoreU(hn::Compress(value, hn::RebindMask(dk, kept)), dk, to + out.count);
-    };
-    for (int k = 0; k < Corners; ++k) {
-        add(u[k], out.u[k]);
-        add(v[k], out.v[k]);
-    }
-    add(depth, out.depth);
-    add(dot(projection.u_axis, nx, ny, nz), out.normal_u);
-    add(dot(projection.v_axis, nx, ny, nz), out.normal_v);
-    add(facing, out.facing);
-    add_key(hn::LoadU(dk, &group.face[first]), out.face);
-    add_key(hn::Iota(dk, std::uint32_t(first)), out.index);
-    out.count += hn::CountTrue(d, kept);
-}
-
-/// Moves what lies behind `done` to the front.
-template <int Corners>
-void RemoveFirst(std::size_t done, ProjectedPolygons<Corners>& polygons) {
-    const std::size_t rest = polygons.count - done;
-    const auto move = [&](auto* values) { std::copy_n(values + done, rest, values); };
-    for (int k = 0; k < Corners; ++k) {
-        move(polygons.u[k]);
-        move(polygons.v[k]);
-    }
-    for (float* values : {polygons.depth, polygons.normal_u, polygons.normal_v, polygons.facing})
-        move(values);
-    move(polygons.face);
-    move(polygons.index);
-    polygons.count = rest;
-}
-
-/// Keys are a plane over the picture in fixed point, depth in the bits above the face's:
-/// key(x, y) = (key0 + (x - first_column) key_du + (y - first_row) key_dv) without its low bits | face.
-/// Arithmetic wraps, the result doesn't.
-template <int Corners>
-struct PolygonBatch {
-    FloatVec u0, v0;                         ///< corner 0, pixels
-    FloatVec base[Corners], slope[Corners];  ///< lines of the edges, u = base + slope v
-    FloatMask left[Corners], right[Corners]; ///< on which side the edge lies; level edges on neither
-    FloatVec first_row, rows, first_column, columns;
-    FloatVec slope_u, slope_v; ///< depth over the picture: a plane
-    KeyVec key0, key_du, key_dv, face, index;
-    FloatMask alive; ///< lanes that hold a polygon
-};
-
-/// Fills a batch with the polygons from `first` on: sets up edges and depths.
-template <int Corners>
-HWY_INLINE void SetUpBatch(const ProjectedPolygons<Corners>& polygons, std::size_t first, DepthScale depths,
-                           PolygonBatch<Corners>& batch) {
-    const FloatTag d;
-    const IntTag di;
-    const KeyTag dk;
-    FloatVec u[Corners], v[Corners];
-    auto low_u = hn::Set(d, 1e30f), high_u = hn::Set(d, -1e30f), low_v = low_u, high_v = high_u;
-    for (int k = 0; k < Corners; ++k) {
-        u[k] = hn::LoadU(d, polygons.u[k] + first);
-        v[k] = hn::LoadU(d, polygons.v[k] + first);
-        low_u = hn::Min(low_u, u[k]);
-        high_u = hn::Max(high_u, u[k]);
-        low_v = hn::Min(low_v, v[k]);
-        high_v = hn::Max(high_v, v[k]);
-    }
     batch.first_row = hn::Ceil(low_v);
     batch.rows = hn::Sub(hn::Ceil(high_v), batch.first_row);
     batch.first_column = hn::Ceil(low_u);
     batch.columns = hn::Sub(hn::Ceil(high_u), batch.first_column);
-    batch.alive = hn::FirstN(d, polygons.count - first);
+    batch.alive = hn::And(hn::Gt(batch.rows, hn::Zero(d)), hn::Gt(batch.columns, hn::Zero(d)));
+    batch.alive = hn::And(batch.alive, hn::FirstN(d, group.count - first));
+    if (hn::AllFalse(d, batch.alive))
+        return false;
+    const auto nx = hn::LoadU(d, &group.normal_x[first]), ny = hn::LoadU(d, &group.normal_y[first]),
+               nz = hn::LoadU(d, &group.normal_z[first]);
+    batch.facing = dot(projection.direction, nx, ny, nz);
+    batch.alive = hn::And(batch.alive, hn::Gt(hn::Abs(batch.facing), hn::Set(d, kLeastFacing)));
+    if (hn::AllFalse(d, batch.alive))
+        return false;
     batch.u0 = u[0];
     batch.v0 = v[0];
-    batch.index = hn::LoadU(dk, polygons.index + first);
     // The face of bark that looks to the far end is the next one.
-    const auto facing = hn::LoadU(d, polygons.facing + first);
-    const auto looks_far = hn::Gt(facing, hn::Zero(d));
-    const auto face = hn::LoadU(dk, polygons.face + first);
+    const auto far_bark = hn::And(hn::Gt(batch.facing, hn::Zero(d)), batch.alive);
+    const auto face = hn::LoadU(dk, &group.face[first]);
     batch.face = hn::Add(hn::And(face, hn::Set(dk, ~PolygonGroup::kBark)),
-                         hn::IfThenElseZero(hn::RebindMask(dk, looks_far), hn::ShiftRight<31>(face)));
+                         hn::IfThenElseZero(hn::RebindMask(dk, far_bark), hn::ShiftRight<31>(face)));
 
     // The plane n . (p - p0) = 0 as depth over the picture.
-    const auto inverse = hn::Div(hn::Set(d, -1.f), hn::IfThenElse(batch.alive, facing, hn::Set(d, 1.f)));
-    batch.slope_u = hn::Mul(hn::LoadU(d, polygons.normal_u + first), inverse);
-    batch.slope_v = hn::Mul(hn::LoadU(d, polygons.normal_v + first), inverse);
-    const auto depth = hn::LoadU(d, polygons.depth + first);
+    const auto inverse = hn::Div(hn::Set(d, -1.f), hn::IfThenElse(batch.alive, batch.facing, hn::Set(d, 1.f)));
+    batch.slope_u = hn::Mul(dot(projection.u_axis, nx, ny, nz), inverse);
+    batch.slope_v = hn::Mul(dot(projection.v_axis, nx, ny, nz), inverse);
     const auto to_first = hn::MulAdd(hn::Sub(batch.first_column, u[0]), batch.slope_u,
                                      hn::Mul(hn::Sub(batch.first_row, v[0]), batch.slope_v));
     const auto scale = hn::Set(d, depths.scale);
@@ -191,7 +126,7 @@ HWY_INLINE void SetUpBatch(const ProjectedPolygons<Corners>& polygons, std::size
     batch.key_dv = fixed(batch.slope_v);
 
     // Counter-clockwise seen from the near end when facing < 0: then edges that rise in v are on the right.
-    const auto turned = hn::Lt(facing, hn::Zero(d));
+    const auto turned = hn::Lt(batch.facing, hn::Zero(d));
     for (int k = 0, j = Corners - 1; k < Corners; j = k++) {
         const auto dv = hn::Sub(v[k], v[j]);
         batch.slope[k] = hn::Div(hn::Sub(u[k], u[j]), dv);
@@ -200,6 +135,7 @@ HWY_INLINE void SetUpBatch(const ProjectedPolygons<Corners>& polygons, std::size
         batch.right[k] = hn::Or(hn::And(rising, turned), hn::AndNot(turned, falling));
         batch.left[k] = hn::Or(hn::And(falling, turned), hn::AndNot(turned, rising));
     }
+    return true;
 }
 
 /// Adds the covered pixels of the lanes in `drawn` to the buffer, and their number to `fragments` of their face.
@@ -268,7 +204,7 @@ struct LonePolygon {
     float base[PolygonGroup::kMaxCorners], slope[PolygonGroup::kMaxCorners];
     bool left[PolygonGroup::kMaxCorners], right[PolygonGroup::kMaxCorners];
     int first_row, rows, first_column;
-    std::uint32_t key0, key_du, key_dv, face, index;
+    std::uint32_t key0, key_du, key_dv, face;
     float u0, v0, slope_u, slope_v;
 
     /// Columns [first, second) of row y that are covered.
@@ -288,12 +224,12 @@ struct LonePolygon {
     }
 };
 
-/// Calls draw(polygon) for every lane of `lanes`.
+/// Calls draw(polygon, lane) for every lane of `lanes`.
 template <int Corners, class Draw>
 void ForEachLane(const PolygonBatch<Corners>& batch, FloatMask lanes, Draw&& draw) {
     const FloatTag d;
     HWY_ALIGN float values[2 * Corners + 7][kMostLanes];
-    HWY_ALIGN std::uint32_t keys[5][kMostLanes];
+    HWY_ALIGN std::uint32_t keys[4][kMostLanes];
     std::uint64_t left[Corners], right[Corners];
     const auto bits = [&](FloatMask mask) {
         std::uint8_t bytes[8] = {0};
@@ -314,8 +250,8 @@ void ForEachLane(const PolygonBatch<Corners>& batch, FloatMask lanes, Draw&& dra
                               batch.v0,        batch.slope_u, batch.slope_v};
     for (int i = 0; i < 7; ++i)
         hn::Store(more[i], d, values[rest + i]);
-    const KeyVec all_keys[5] = {batch.key0, batch.key_du, batch.key_dv, batch.face, batch.index};
-    for (int i = 0; i < 5; ++i)
+    const KeyVec all_keys[4] = {batch.key0, batch.key_du, batch.key_dv, batch.face};
+    for (int i = 0; i < 4; ++i)
         hn::Store(all_keys[i], KeyTag(), keys[i]);
     for (std::uint64_t todo = bits(lanes); todo; todo &= todo - 1) {
         const int lane = std::countr_zero(todo);
@@ -338,8 +274,7 @@ void ForEachLane(const PolygonBatch<Corners>& batch, FloatMask lanes, Draw&& dra
         polygon.key_du = keys[1][lane];
         polygon.key_dv = keys[2][lane];
         polygon.face = keys[3][lane];
-        polygon.index = keys[4][lane];
-        draw(polygon);
+        draw(polygon, std::size_t(lane));
     }
 }
 
