@@ -24,7 +24,8 @@ glm::vec2 grid_jitter(std::uint64_t seed, std::size_t direction) {
 
 /// Without branches, so that a compiler makes vectors of it.
 std::uint8_t fraction(std::uint32_t open, std::uint32_t of) {
-    const std::int32_t share = std::int32_t(float(std::int32_t(open)) / float(std::max(std::int32_t(of), 1)) * 254 + 0.5f);
+    const std::int32_t share =
+        std::int32_t(float(std::int32_t(open)) / float(std::max(std::int32_t(of), 1)) * 254 + 0.5f);
     return std::uint8_t(of == 0 ? OpenFractions::kUnseen : share);
 }
 
@@ -72,34 +73,35 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
                 for (const std::uint32_t value : *sides)
                     count[FacingSide{value}.side()] += !FacingSide{value}.inside_wood();
     });
-    links.begin.resize(side_count + 1);
-    links.middle.resize(side_count);
     std::uint64_t all = side_count;
     for (const DirectionLinks& direction : directions)
         all += 2 * direction.a.size();
     require_countable(all);
-    std::uint32_t running = 0;
     std::vector<Side> lonely;
-    for (std::size_t s = 0; s < side_count; ++s) {
-        std::uint32_t first = cursor[0][s];
-        const std::uint32_t second = cursor[1][s];
-        if (first + second == 0) {
-            first = 1;
+    for (std::size_t s = 0; s < side_count; ++s)
+        if (cursor[0][s] + cursor[1][s] == 0) {
+            cursor[0][s] = 1;
             lonely.push_back(Side(s));
         }
-        links.begin[s] = cursor[0][s] = running;
-        links.middle[s] = cursor[1][s] = running + first;
-        running += first + second;
+    links.lay_out(cursor[0], cursor[1]);
+    for (std::size_t k = 0; k < side_count; ++k) {
+        const std::size_t side = k / Links::kBlock * Links::kBlock + links.side_at[k];
+        cursor[0][side] = links.begin[k];
+        cursor[1][side] = links.middle[k];
     }
-    links.begin[side_count] = running;
-    links.neighbours.resize(running);
+    // What the inside of wood would be given, below, goes to two places that are cut off afterwards.
+    const std::size_t count = links.neighbours.size();
+    links.neighbours.resize(count + 2);
+    for (Side side : lonely)
+        for (std::uint32_t h = 0; h < 2; ++h)
+            cursor[h][side] = std::uint32_t(count) + h;
     parallel_blocks(2, 1, [&](std::size_t h, std::size_t) {
         Side* neighbours = links.neighbours.data();
         std::uint32_t* next = cursor[h].data();
         for (std::size_t d = bounds[h]; d < bounds[h + 1]; ++d) {
             const DirectionLinks& direction = directions[d];
             for (std::size_t i = 0; i < direction.a.size(); ++i) {
-                // Without branches: what the inside of wood is given is overwritten below.
+                // Without branches, which would often be foreseen wrongly.
                 const FacingSide a{direction.a[i]}, b{direction.b[i]};
                 neighbours[next[a.side()]] = b.side();
                 next[a.side()] += !a.inside_wood();
@@ -108,13 +110,15 @@ void compress(const PatchScene& scene, const std::vector<DirectionLinks>& direct
             }
         }
     });
+    links.neighbours.resize(count);
     // The inside of wood is as dim as a second reflection of its outside. Another side that meets nobody (hidden in
     // wood, or all its lines end outside) takes what its open share leaves from the patch before it, its neighbour on
     // the branch. Rows stay stochastic.
     for (Side side : lonely) {
-        links.neighbours[links.begin[side]] = inside_wood(side) ? side - 1
-                                              : side >= 2       ? side - 2
-                                                          : std::min<Side>(side + 2, Side(side_count) - 2 + side % 2);
+        links.neighbours[links.begin[links.place(side)]] =
+            inside_wood(side) ? side - 1
+            : side >= 2       ? side - 2
+                              : std::min<Side>(side + 2, Side(side_count) - 2 + side % 2);
     }
 }
 
@@ -242,9 +246,9 @@ BeamVisibility trace_beams(const PatchScene& scene, const Facets& facets, const 
 std::size_t BundleTransport::bytes() const {
     auto size = [](const auto& v) { return v.size() * sizeof(v[0]); };
     return size(sky_open.near_end) + size(sky_open.far_end) + size(link_open.near_end) + size(link_open.far_end) +
-           size(links.begin) + size(links.middle) + size(links.neighbours) + size(links.ground) +
-           size(links.ground_begin) + size(links.ground_pixel_area) + size(sky_lines.directions) +
-           size(link_lines.directions) + rays.bytes();
+           size(links.side_at) + size(links.place_of) + size(links.begin) + size(links.middle) +
+           size(links.neighbours) + size(links.ground) + size(links.ground_begin) + size(links.ground_pixel_area) +
+           size(sky_lines.directions) + size(link_lines.directions) + rays.bytes();
 }
 
 } // namespace kokage::bundles

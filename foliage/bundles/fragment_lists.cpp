@@ -53,9 +53,7 @@ constexpr auto make_network() {
     }();
     std::array<Comparator, std::size_t(size)> network{};
     std::size_t next = 0;
-    for_each_comparator(Count, [&](int low, int high) {
-        network[next++] = {std::uint8_t(low), std::uint8_t(high)};
-    });
+    for_each_comparator(Count, [&](int low, int high) { network[next++] = {std::uint8_t(low), std::uint8_t(high)}; });
     return network;
 }
 
@@ -76,7 +74,8 @@ HWY_INLINE void SortLists(KeyVec lengths, std::size_t rows, std::uint32_t* keys)
             low = least;
         };
         (order(key[network[Step].low], key[network[Step].high]), ...);
-    }(std::make_index_sequence<network.size()>());
+    }
+    (std::make_index_sequence<network.size()>());
     for (std::size_t i = 0; i < Count; ++i)
         if (i < rows) // behind them are another group's
             hn::StoreU(key[i], d, keys + i * kGroup);
@@ -152,8 +151,7 @@ void SortGroups(FragmentLists& lists, std::uint32_t face_mask, std::uint32_t* ne
             const KeyVec nearest = hn::LoadU(d, keys);
             KeyVec farthest = nearest;
             for (std::uint32_t i = 1; i < rows; ++i)
-                farthest =
-                    hn::IfThenElse(hn::Lt(hn::Set(d, i), length), hn::LoadU(d, keys + i * kGroup), farthest);
+                farthest = hn::IfThenElse(hn::Lt(hn::Set(d, i), length), hn::LoadU(d, keys + i * kGroup), farthest);
             const auto some = hn::Gt(length, hn::Zero(d));
             add(nearest, some, near_count);
             add(farthest, some, far_count);

@@ -108,8 +108,8 @@ void near_sides(const Facets& facets, const LeafPlanes& leaves, const glm::vec3&
                 std::vector<std::uint32_t>& sides) {
     sides.resize(facets.face_count());
     for (std::size_t f = 0; f < facets.leaf_facet_count; ++f) {
-        const float facing = leaves.normal_x[f] * direction.x + leaves.normal_y[f] * direction.y +
-                             leaves.normal_z[f] * direction.z;
+        const float facing =
+            leaves.normal_x[f] * direction.x + leaves.normal_y[f] * direction.y + leaves.normal_z[f] * direction.z;
         sides[f] = leaves.front[f] + std::uint32_t(facing >= 0);
     }
     for (std::size_t f = facets.leaf_facet_count, face = f; f < facets.facets.size(); ++f, face += 2) {

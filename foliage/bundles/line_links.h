@@ -30,8 +30,8 @@ LeafPlanes leaf_planes(const Facets& facets);
 void near_sides(const Facets& facets, const LeafPlanes& leaves, const glm::vec3& direction,
                 std::vector<std::uint32_t>& sides);
 
-/// Where pixel (0, 0)'s line meets the ground, and how that moves from pixel to pixel. Invalid: lines too flat to stay on
-/// the grid.
+/// Where pixel (0, 0)'s line meets the ground, and how that moves from pixel to pixel. Invalid: lines too flat to stay
+/// on the grid.
 struct GroundProjection {
     glm::vec2 origin, along_u, along_v;
     bool valid = false;
@@ -45,8 +45,8 @@ struct DirectionLinks {
 };
 
 /// What the walls inside wood see of each other is nobody's light and is left out; leaves that reach into the wood
-/// (most do, at their stalk) see the dark wall. With a ground, every kStride-th line of every kStride-th row is followed
-/// to it; `phase` says from which on. `sides`: near_sides().
+/// (most do, at their stalk) see the dark wall. With a ground, every kStride-th line of every kStride-th row is
+/// followed to it; `phase` says from which on. `sides`: near_sides().
 void collect_links(const RasterScratch& raster, const Facets& facets, const Projection& projection,
                    const std::vector<std::uint32_t>& sides, const std::optional<GroundGrid>& ground,
                    std::uint32_t phase, DirectionLinks& out);

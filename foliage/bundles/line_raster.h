@@ -21,8 +21,8 @@ namespace kokage::bundles {
 struct Projection {
     glm::vec3 u_axis, v_axis, direction; ///< orthonormal, u x v = -direction
     float pixels_per_unit = 1;
-    glm::vec2 offset{0.f}; ///< in pixels; jitters the grid and moves everything to positive coordinates
-    int width = 0, height = 0; ///< the width is a multiple of FragmentLists::kGroup
+    glm::vec2 offset{0.f};               ///< in pixels; jitters the grid and moves everything to positive coordinates
+    int width = 0, height = 0;           ///< the width is a multiple of FragmentLists::kGroup
     float depth_low = 0, depth_high = 1; ///< in pixels along the direction
 };
 

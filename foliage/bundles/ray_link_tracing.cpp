@@ -81,8 +81,9 @@ std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, std::u
         const Side side = 2 * patch + row / 2;
         const std::span<const std::uint16_t> ends = rays.ends_of(4 * std::size_t(found - rays.patches.begin()) + row);
         const std::size_t met = rays.rays_a_row - ends.size();
+        const std::span<const Side> lines = earlier.links.row(side);
         const auto from =
-            earlier.links.neighbours.begin() + (row % 2 == 0 ? earlier.links.begin[side] : earlier.links.middle[side]);
+            row % 2 == 0 ? lines.begin() : lines.begin() + std::ptrdiff_t(earlier.links.half_row(side, 0).size());
         const auto to = std::copy_n(from, met, seen.begin() + std::ptrdiff_t(row) * rays_a_row);
         std::transform(ends.begin(), ends.end(), to, [](std::uint16_t end) { return kEnd + end; });
     }
@@ -106,34 +107,47 @@ void append(std::uint32_t patch, std::span<const std::uint32_t> seen, RayLinks& 
 /// Compressed rows with those of the traced patches replaced. A row in which no ray met anything keeps one neighbour
 /// of what lines found: rows may not be empty, and its closed share is 0.
 void replace_rows(const RayLinks& rays, const Met& met, Links& links) {
-    const std::size_t sides = links.begin.size() - 1;
+    const std::size_t sides = links.side_count();
     Links old;
-    old.begin.swap(links.begin);
-    old.middle.swap(links.middle);
-    old.neighbours.swap(links.neighbours);
-    links.begin.reserve(sides + 1);
-    links.middle.reserve(sides);
-    links.neighbours.reserve(old.neighbours.size() + met.sides.size());
-    std::size_t next = 0; // of rays.patches
-    for (std::size_t side = 0; side < sides; ++side) {
-        links.begin.push_back(std::uint32_t(links.neighbours.size()));
-        while (next < rays.patches.size() && rays.patches[next] < side / 2)
-            ++next;
-        const bool traced = next < rays.patches.size() && rays.patches[next] == side / 2;
-        const std::size_t row = 4 * next + 2 * (side % 2);
-        if (traced && met.begin[row] < met.begin[row + 2]) {
-            const Side* sees = met.sides.data();
-            links.neighbours.insert(links.neighbours.end(), sees + met.begin[row], sees + met.begin[row + 1]);
-            links.middle.push_back(std::uint32_t(links.neighbours.size()));
-            links.neighbours.insert(links.neighbours.end(), sees + met.begin[row + 1], sees + met.begin[row + 2]);
-        } else {
-            const Side* sees = old.neighbours.data();
-            const std::uint32_t begin = old.begin[side], end = traced ? begin + 1 : old.begin[side + 1];
-            links.middle.push_back(links.begin.back() + std::min(old.middle[side], end) - begin);
-            links.neighbours.insert(links.neighbours.end(), sees + begin, sees + end);
+    std::swap(old, links);
+    links.ground = std::move(old.ground);
+    links.ground_begin = std::move(old.ground_begin);
+    links.ground_pixel_area = std::move(old.ground_pixel_area);
+    const auto met_by = [&](std::size_t row) {
+        return std::span(met.sides).subspan(met.begin[row], met.begin[row + 1] - met.begin[row]);
+    };
+    /// Calls store(side, first half, second half) for all rows.
+    const auto for_each_row = [&](auto&& store) {
+        std::size_t next = 0; // of rays.patches
+        for (Side side = 0; side < sides; ++side) {
+            while (next < rays.patches.size() && rays.patches[next] < side / 2)
+                ++next;
+            const bool traced = next < rays.patches.size() && rays.patches[next] == side / 2;
+            const std::size_t row = 4 * next + 2 * (side % 2);
+            if (traced && met.begin[row] < met.begin[row + 2]) {
+                store(side, met_by(row), met_by(row + 1));
+            } else {
+                std::span<const Side> halves[2] = {old.half_row(side, 0), old.half_row(side, 1)};
+                if (traced) {
+                    const bool in_first = !halves[0].empty();
+                    halves[!in_first] = halves[!in_first].first(1);
+                    halves[in_first] = {};
+                }
+                store(side, halves[0], halves[1]);
+            }
         }
-    }
-    links.begin.push_back(std::uint32_t(links.neighbours.size()));
+    };
+    std::vector<std::uint32_t> lengths[2] = {std::vector<std::uint32_t>(sides), std::vector<std::uint32_t>(sides)};
+    for_each_row([&](Side side, std::span<const Side> first, std::span<const Side> second) {
+        lengths[0][side] = std::uint32_t(first.size());
+        lengths[1][side] = std::uint32_t(second.size());
+    });
+    links.lay_out(lengths[0], lengths[1]);
+    for_each_row([&](Side side, std::span<const Side> first, std::span<const Side> second) {
+        const std::size_t place = links.place(side);
+        std::copy(first.begin(), first.end(), links.neighbours.begin() + links.begin[place]);
+        std::copy(second.begin(), second.end(), links.neighbours.begin() + links.middle[place]);
+    });
 }
 
 } // namespace

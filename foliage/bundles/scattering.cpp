@@ -12,26 +12,65 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Rgb4 = hn::FixedTag<float, 4>; // one side; every instruction set has vectors of four
 using Vec = hn::Vec<Rgb4>;
 
-struct Row {
+/// Part of a row.
+struct Part {
     const Side *begin, *end;
 };
 
-HWY_INLINE Row row_of(const Links& links, std::size_t side) {
-    return {links.neighbours.data() + links.begin[side], links.neighbours.data() + links.begin[side + 1]};
+/// Adds the values at [from, to) behind begin.
+HWY_INLINE Vec sum_links(const Part& part, std::size_t from, std::size_t to, const Rgb* values, Vec sum) {
+    for (std::size_t i = from; i < to; ++i)
+        sum = hn::Add(sum, hn::Load(Rgb4(), &values[part.begin[i]].r));
+    return sum;
 }
 
-/// Sum of the neighbours' values over part of a row.
-HWY_INLINE Vec sum_row(Row row, const Rgb* values) {
+constexpr std::size_t kRowsAtOnce = 4;
+
+/// Sums of the neighbours' values over parts of several rows, together as far as the shortest goes.
+HWY_INLINE void sum_parts(const Part (&parts)[kRowsAtOnce], const Rgb* values, Vec (&sums)[kRowsAtOnce]) {
     const Rgb4 d;
-    auto even = hn::Zero(d), odd = hn::Zero(d);
-    const Side* i = row.begin;
-    for (; i + 1 < row.end; i += 2) {
-        even = hn::Add(even, hn::Load(d, &values[i[0]].r));
-        odd = hn::Add(odd, hn::Load(d, &values[i[1]].r));
+    std::size_t length[kRowsAtOnce], shortest = ~std::size_t(0), longest = 0;
+    for (std::size_t k = 0; k < kRowsAtOnce; ++k) {
+        sums[k] = hn::Zero(d);
+        length[k] = std::size_t(parts[k].end - parts[k].begin);
+        shortest = std::min(shortest, length[k]);
+        longest = std::max(longest, length[k]);
     }
-    if (i < row.end)
-        even = hn::Add(even, hn::Load(d, &values[*i].r));
-    return hn::Add(even, odd);
+    for (std::size_t i = 0; i < shortest; ++i)
+        for (std::size_t k = 0; k < kRowsAtOnce; ++k)
+            sums[k] = hn::Add(sums[k], hn::Load(d, &values[parts[k].begin[i]].r));
+    if (HWY_UNLIKELY(longest > shortest))
+        for (std::size_t k = 0; k < kRowsAtOnce; ++k)
+            sums[k] = sum_links(parts[k], shortest, length[k], values, sums[k]);
+}
+
+/// Per side of a block.
+struct BlockSums {
+    HWY_ALIGN float values[2 * kSweepBlock][4];
+    Vec of(std::size_t side) const { return hn::Load(Rgb4(), values[side]); }
+};
+
+/// Sums of one part of every row of patches [from, to), a block; part_of(place).
+template <class PartOf>
+HWY_INLINE void sum_rows(const Links& links, std::size_t from, std::size_t to, const Rgb* values, BlockSums& sums,
+                         PartOf&& part_of) {
+    const Rgb4 d;
+    const std::uint16_t* side_at = links.side_at.data();
+    std::size_t place = 2 * from;
+    for (; place + kRowsAtOnce <= 2 * to; place += kRowsAtOnce) {
+        Part parts[kRowsAtOnce];
+        Vec sum[kRowsAtOnce];
+        for (std::size_t k = 0; k < kRowsAtOnce; ++k)
+            parts[k] = part_of(place + k);
+        sum_parts(parts, values, sum);
+        for (std::size_t k = 0; k < kRowsAtOnce; ++k)
+            hn::Store(sum[k], d, sums.values[side_at[place + k]]);
+    }
+    for (; place < 2 * to; ++place) {
+        const Part part = part_of(place);
+        const auto length = std::size_t(part.end - part.begin);
+        hn::Store(sum_links(part, 0, length, values, hn::Zero(d)), d, sums.values[side_at[place]]);
+    }
 }
 
 struct PatchOptics {
@@ -55,7 +94,7 @@ std::vector<float> link_weights(const Links& links, std::span<const float> open)
     std::vector<float> weights(open.size());
     parallel_blocks(open.size(), 2 * kSweepBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t side = from; side < to; ++side)
-            weights[side] = kPi * (1 - open[side]) / float(std::max(links.begin[side + 1] - links.begin[side], 1u));
+            weights[side] = kPi * (1 - open[side]) / float(std::max(links.row_length(Side(side)), 1u));
     });
     return weights;
 }
@@ -113,7 +152,9 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
                        std::span<const float> weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
                        std::span<Rgb> scattered, const SweepHistory* history, HistoryProducts* products) {
     const std::vector<PatchOptics> of_patches = over_pi(optics);
-    const bool remember = history && !history->read[0].empty();
+    // Of large trees a quarter of the sides tells the products well enough: to read what they are made of takes as long
+    // as a third of a sweep.
+    const std::size_t stride = scene.patches.size() > 8 * kSweepBlock ? 4 : 1;
     struct Block {
         RadianceChange change;
         HistoryProducts products;
@@ -122,12 +163,18 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
     parallel_blocks(scene.patches.size(), kSweepBlock, [&](std::size_t from, std::size_t to) {
         const Rgb4 d;
         ChangeSums change;
-        ProductSums sums;
+        const bool remember = history && !history->read[0].empty() && from / kSweepBlock % stride == 0;
+        ProductSums products_of_block;
+        BlockSums sums;
+        const Side* neighbours = links.neighbours.data();
+        sum_rows(links, from, to, radiance.data(), sums, [&](std::size_t place) {
+            return Part{neighbours + links.begin[place], neighbours + links.begin[place + 1]};
+        });
         for (std::size_t patch = from; patch < to; ++patch) {
             Vec irradiance[2];
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::size_t side = 2 * patch + k;
-                irradiance[k] = hn::Mul(sum_row(row_of(links, side), radiance.data()), hn::Set(d, weights[side]));
+                irradiance[k] = hn::Mul(sums.of(side - 2 * from), hn::Set(d, weights[side]));
             }
             const PatchOptics& optic = of_patches[scene.patches[patch].optics];
             const auto r = hn::Load(d, optic.reflectance), t = hn::Load(d, optic.transmittance);
@@ -139,11 +186,11 @@ RadianceChange scatter(const PatchScene& scene, const Links& links, const std::v
                 const auto before = hn::Load(d, &radiance[side].r);
                 change.add(before, result);
                 if (remember)
-                    sums.add(*history, side, hn::Sub(result, before));
+                    products_of_block.add(*history, side, hn::Sub(result, before));
                 hn::Store(result, d, &scattered[side].r);
             }
         }
-        blocks[from / kSweepBlock] = {change.change(), sums.products()};
+        blocks[from / kSweepBlock] = {change.change(), products_of_block.products()};
     });
     RadianceChange all;
     HistoryProducts all_products;
@@ -187,21 +234,29 @@ void scatter_halves(const PatchScene& scene, const Links& links, const std::vect
             return;
         const Rgb4 d;
         const auto half = hn::Set(d, 0.5f);
+        BlockSums first, second;
+        const Side* neighbours = links.neighbours.data();
+        sum_rows(links, from, to, radiance.data(), first, [&](std::size_t place) {
+            return Part{neighbours + links.begin[place], neighbours + links.middle[place]};
+        });
+        sum_rows(links, from, to, radiance.data(), second, [&](std::size_t place) {
+            return Part{neighbours + links.middle[place], neighbours + links.begin[place + 1]};
+        });
         for (std::size_t patch = from; patch < to; ++patch) {
             Vec difference[2]; // of irradiance
             for (std::size_t k = 0; k < 2; ++k) {
                 const std::size_t side = 2 * patch + k;
-                const Side *begin = links.neighbours.data() + links.begin[side],
-                           *middle = links.neighbours.data() + links.middle[side],
-                           *end = links.neighbours.data() + links.begin[side + 1];
-                const Row rows[2] = {{begin, middle}, {middle, end}};
-                const Vec sums[2] = {sum_row(rows[0], radiance.data()), sum_row(rows[1], radiance.data())};
-                const bool both = begin < middle && middle < end;
+                const std::size_t place = links.place(Side(side));
+                const std::uint32_t begin = links.begin[place], middle = links.middle[place],
+                                    end = links.begin[place + 1];
+                const std::uint32_t lengths[2] = {middle - begin, end - middle};
+                const Vec sums[2] = {first.of(side - 2 * from), second.of(side - 2 * from)};
+                const bool both = lengths[0] > 0 && lengths[1] > 0;
                 const float all = 1 / std::max(float(end - begin), 1.f);
                 Vec irradiance[2];
                 for (int h = 0; h < 2; ++h) {
                     const float closed = kPi * (1 - halves[h].open[side]);
-                    irradiance[h] = both ? hn::Mul(sums[h], hn::Set(d, closed / float(rows[h].end - rows[h].begin)))
+                    irradiance[h] = both ? hn::Mul(sums[h], hn::Set(d, closed / float(lengths[h])))
                                          : hn::Mul(hn::Add(sums[0], sums[1]), hn::Set(d, closed * all));
                     if (!halves[h].irradiance.empty())
                         irradiance[h] = hn::Add(irradiance[h], hn::Load(d, &halves[h].irradiance[side].r));

@@ -14,6 +14,8 @@ struct alignas(16) Rgb {
     static Rgb from(const glm::vec3& v) { return {v.x, v.y, v.z, 0}; }
 };
 
+inline constexpr std::size_t kSweepBlock = Links::kBlock / 2; ///< patches that are done together
+
 /// What one link of a side brings it, per side: pi (1 - open) / links, where open is the share of the side's
 /// cosine-weighted hemisphere that links don't fill.
 std::vector<float> link_weights(const Links& links, std::span<const float> open);
@@ -37,7 +39,7 @@ struct HistoryProducts {
 
 /// One scattering of `radiance` along the links, added to what sides emit (light from outside, scattered once; empty =
 /// none). All arrays are per side. Returns how the result differs from `radiance`. With a history of at least one
-/// sweep, `products` receives its inner products.
+/// sweep, `products` receives its inner products (of large trees, those of a quarter of the sides).
 RadianceChange scatter(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
                        std::span<const float> weights, std::span<const Rgb> radiance, std::span<const Rgb> emitted,
                        std::span<Rgb> scattered, const SweepHistory* history = nullptr,
@@ -55,7 +57,6 @@ struct HalfLight {
 /// Two scatterings of `radiance`, each with the neighbours of one half of the directions and with its own light from
 /// outside (a half without neighbours makes do with both). Written are half the difference of the radiances and the
 /// mean irradiance. Only every `stride`-th block of kSweepBlock patches is done; the others are left as they are.
-inline constexpr std::size_t kSweepBlock = 2048;
 void scatter_halves(const PatchScene& scene, const Links& links, const std::vector<Optics>& optics,
                     std::span<const Rgb> radiance, const HalfLight (&halves)[2], std::span<Rgb> half_difference,
                     std::span<Rgb> mean_irradiance, std::size_t stride = 1);

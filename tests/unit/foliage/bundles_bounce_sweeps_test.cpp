@@ -64,9 +64,9 @@ std::vector<double> dense_solve(const TracedTree& tree, const OutsideLight& outs
     Eigen::VectorXd first(sides);
     for (Eigen::Index s = 0; s < sides; ++s) {
         const auto side = std::size_t(s);
-        for (std::uint32_t i = links.begin[side]; i < links.begin[side + 1]; ++i)
-            gather(s, links.neighbours[i]) +=
-                (1.0 - double(outside.open[side])) / double(links.begin[side + 1] - links.begin[side]);
+        const std::span<const Side> row = links.row(Side(side));
+        for (const Side neighbour : row)
+            gather(s, neighbour) += (1.0 - double(outside.open[side])) / double(row.size());
         first[s] = double(outside.irradiance[side].vec()[channel]) / kPiDouble;
     }
     Eigen::MatrixXd scattering = Eigen::MatrixXd::Zero(sides, sides);
@@ -248,19 +248,21 @@ TEST(BundlesBounceSweeps, RowsAreStochasticAndLinksGoBothWays) {
     const Links& links = tree.transport.links;
     const OutsideLight outside = tree.outside(test::sky_and_sun());
     const std::size_t sides = 2 * tree.scene.patches.size();
+    ASSERT_EQ(links.side_count(), sides);
     ASSERT_EQ(links.begin.size(), sides + 1);
     std::map<std::pair<Side, Side>, int> count;
     std::size_t lonely = 0;
     for (Side s = 0; s < sides; ++s) {
         EXPECT_GE(outside.open[s], 0);
         EXPECT_LE(outside.open[s], 1);
-        ASSERT_LT(links.begin[s], links.begin[s + 1]) << "no row is empty";
-        EXPECT_LE(links.begin[s], links.middle[s]);
-        EXPECT_LE(links.middle[s], links.begin[s + 1]);
-        lonely += links.begin[s + 1] - links.begin[s] == 1;
-        for (std::uint32_t i = links.begin[s]; i < links.begin[s + 1]; ++i) {
-            ASSERT_LT(links.neighbours[i], sides);
-            ++count[{s, links.neighbours[i]}];
+        const std::span<const Side> row = links.row(s);
+        ASSERT_FALSE(row.empty());
+        EXPECT_EQ(links.half_row(s, 0).size() + links.half_row(s, 1).size(), row.size());
+        EXPECT_EQ(links.row_length(s), row.size());
+        lonely += row.size() == 1;
+        for (const Side neighbour : row) {
+            ASSERT_LT(neighbour, sides);
+            ++count[{s, neighbour}];
         }
     }
     const Side inside = Side(sides) - 1; // of the wood; its own row is made up

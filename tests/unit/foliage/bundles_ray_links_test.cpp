@@ -190,11 +190,10 @@ TEST(BundlesRayLinks, RaysSeeWhatTheSlowTwinSees) {
                 constexpr int kSlowRays = 8192;
                 const std::vector<double> expected = seen_by_brute_force(scene, side, kSlowRays);
                 const double open = double(sky.all.open[side]), down = double(sky.all.down[side]);
-                const Links& links = traced.transport.links;
                 std::vector<double> found(expected.size(), 0.0);
-                const std::uint32_t begin = links.begin[side], end = links.begin[side + 1];
-                for (std::uint32_t i = begin; i < end; ++i)
-                    found[links.neighbours[i]] += (1 - open) / double(end - begin);
+                const std::span<const Side> row = traced.transport.links.row(side);
+                for (const Side neighbour : row)
+                    found[neighbour] += (1 - open) / double(row.size());
                 found[found.size() - 2] = ground ? open - down : open;
                 found.back() = ground ? down : 0;
                 for (std::size_t k = 0; k < expected.size(); ++k) {
@@ -212,24 +211,19 @@ TEST(BundlesRayLinks, OtherRowsStayAndAllAreStochastic) {
     const Traced traced(scene, 64);
     const Links &before = plain.links, &after = traced.transport.links;
     const SkyLight sky = gather_sky(scene, facets, traced.transport, test::sky_and_sun().remainder, glm::vec3(0));
-    ASSERT_EQ(after.begin.size(), before.begin.size());
+    ASSERT_EQ(after.side_count(), before.side_count());
     ASSERT_EQ(traced.transport.rays.patches.size(), 40u);
-    for (std::size_t side = 0; side + 1 < after.begin.size(); ++side) {
-        ASSERT_LT(after.begin[side], after.begin[side + 1]);
-        ASSERT_LE(after.begin[side], after.middle[side]);
-        ASSERT_LE(after.middle[side], after.begin[side + 1]);
+    for (Side side = 0; side < after.side_count(); ++side) {
+        ASSERT_FALSE(after.row(side).empty());
         if (side / 2 % kStep != 0) {
-            EXPECT_TRUE(std::equal(
-                before.neighbours.begin() + before.begin[side], before.neighbours.begin() + before.begin[side + 1],
-                after.neighbours.begin() + after.begin[side], after.neighbours.begin() + after.begin[side + 1]));
-            EXPECT_EQ(after.middle[side] - after.begin[side], before.middle[side] - before.begin[side]);
+            EXPECT_TRUE(std::ranges::equal(before.row(side), after.row(side)));
+            EXPECT_EQ(after.half_row(side, 0).size(), before.half_row(side, 0).size());
             continue;
         }
         // Each half: as many rays met something as its closed share says.
-        const std::uint32_t met[2] = {after.middle[side] - after.begin[side],
-                                      after.begin[side + 1] - after.middle[side]};
+        const std::size_t met[2] = {after.half_row(side, 0).size(), after.half_row(side, 1).size()};
         for (int h = 0; h < 2 && sky.all.open[side] < 1; ++h)
-            EXPECT_NEAR(double(sky.halves[h].open[side]), 1 - met[h] / 32.0, 1e-5);
+            EXPECT_NEAR(double(sky.halves[h].open[side]), 1 - double(met[h]) / 32.0, 1e-5);
     }
 }
 
