@@ -52,6 +52,24 @@ TEST(Growth, SameSeedGivesSameBytesWithAnyNumberOfThreads) {
     EXPECT_NE(hashes[0], hash_of(grow(oak_with(3000, 2)))) << "another seed is another tree";
 }
 
+TEST(Growth, EverySpeciesGivesTheSameBytesWithAnyNumberOfThreadsAndExactLeaves) {
+    for (const Species& species : all_species())
+        for (const int leaves : {1, 37, 2500}) {
+            GrowthParameters parameters = species.parameters;
+            parameters.leaves = leaves;
+            std::vector<std::uint64_t> hashes;
+            for (const int threads : {1, 3}) {
+                set_thread_count(threads);
+                const Tree tree = grow(parameters);
+                EXPECT_EQ(tree.leaves.size(), std::size_t(leaves)) << species.name;
+                EXPECT_TRUE(is_sound(tree)) << species.name << ", " << leaves;
+                hashes.push_back(hash_of(tree));
+            }
+            EXPECT_EQ(hashes[0], hashes[1]) << species.name << ", " << leaves;
+        }
+    set_thread_count(0);
+}
+
 TEST(Growth, LeafCountIsExactAndEveryLeafHangsOnItsBranch) {
     for (const int leaves : {1, 2, 3, 7, 8, 20, 99, 1000, 5000, 30000}) {
         const Tree tree = grow(oak_with(leaves));
