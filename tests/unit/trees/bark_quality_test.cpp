@@ -79,8 +79,8 @@ BarkQuality measure(const GrowthParameters& p) {
     const Tree tree = grow(p);
     TreePart bark;
     std::vector<BarkPlace> patches;
-    make_bark(tree.skeleton, p, bark, &patches);
     const std::vector<Tube> tubes = make_tubes(tree.skeleton, p);
+    make_bark(tubes, p, bark, &patches);
     const auto branch = [&](std::size_t triangle) { return patches[bark.triangle_patch[triangle]].branch; };
     BarkQuality quality;
     for (std::size_t first = 0, last = 0; first < bark.triangles.size(); first = last) {
