@@ -5,6 +5,7 @@
 #include "trees/write_tree.h"
 #include "viewer/command.h"
 #include "viewer/output_check.h"
+#include "viewer/shade_lods.h"
 #include "viewer/shade_options.h"
 #include "viewer/shaded_scene.h"
 #include "viewer/shading_report.h"
@@ -101,6 +102,11 @@ std::string asked_text(const ShadingOptions& options) {
     return text;
 }
 
+void print_file(const std::filesystem::path& file) {
+    std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
+                bytes_text(double(std::filesystem::file_size(file))).c_str());
+}
+
 void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
     std::printf("%s: %s, %s%s; %s\n", s.tree.name.c_str(), counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
                 counted(s.patches.patches.size(), "patch", "patches").c_str(),
@@ -118,8 +124,7 @@ void print_summary(const ShadeOptions& options, const Shading& s, const StageClo
                     duration_text(stage.cpu_seconds).c_str());
     for (const std::filesystem::path& file : {options.output, options.image, options.report})
         if (!file.empty())
-            std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
-                        bytes_text(double(std::filesystem::file_size(file))).c_str());
+            print_file(file);
 }
 
 /// Options about things that this run doesn't make or read.
@@ -150,6 +155,13 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     shade(options, shading, clock, *context.progress);
 
     const WritingFiles writing;
+    std::vector<std::filesystem::path> lods;
+    if (!options.lods.empty())
+        clock.run("levels", [&] {
+            lods = write_lods({shading.tree, shading.patches, shading.origins, shading.solution, shading.environment},
+                              {.folder = options.lods, .stem = options.tree.stem(), .split_sides = options.split_sides},
+                              *context.progress);
+        });
     clock.run("write", [&] {
         context.progress->begin("writing", 0);
         if (!options.output.empty())
@@ -174,6 +186,8 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     for (const auto& [what, file] : outputs)
         if (!file->empty())
             record.outputs.emplace_back(what, file->string());
+    for (const std::filesystem::path& file : lods)
+        record.outputs.emplace_back("level of detail", file.string());
     if (!options.report.empty())
         write_json(options.report, shading_report(record));
 
@@ -184,6 +198,8 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         for (const std::string& warning : *warnings)
             std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
     print_summary(options, shading, clock);
+    for (const std::filesystem::path& file : lods)
+        print_file(file);
 }
 
 } // namespace

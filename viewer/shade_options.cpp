@@ -1,6 +1,7 @@
 #include "viewer/shade_options.h"
 #include "common/services/error.h"
 #include "viewer/output_check.h"
+#include "viewer/shade_lods.h"
 #include "viewer/values.h"
 
 #include <cmath>
@@ -78,6 +79,11 @@ void add_output_options(CLI::App& app, ShadeOptions& o) {
                    "Its exposure in stops (otherwise automatic); not for .exr and .hdr")
         ->type_name("STOPS")
         ->group("Output");
+    app.add_option("--lods", o.lods,
+                   "Levels of detail in this folder: three coarser trees that keep leaf area and light, an impostor of "
+                   "four cards, a picture and figures of each one's error")
+        ->type_name("FOLDER")
+        ->group("Output");
     app.add_option("--report", o.report, "What was done, counted, timed and skipped")
         ->type_name("R.json")
         ->group("Output");
@@ -96,7 +102,7 @@ void refuse_idle_options(const ShadeOptions& o) {
         if (given && method == Method::path_traced)
             throw InputError(std::string(option) + ": path-traced uses no light maps, so it would change nothing; " +
                              "leave it out, or choose another --method");
-        if (given && method == Method::bundles && o.output.empty())
+        if (given && method == Method::bundles && o.output.empty() && o.lods.empty())
             throw InputError(std::string(option) +
                              ": bundles does not shade by light maps, it only writes them to the shaded tree, which "
                              "is not written; add -o OUT.glb, or give --method light-maps");
@@ -105,7 +111,7 @@ void refuse_idle_options(const ShadeOptions& o) {
 
 void complete_method(ShadeOptions& o) {
     ShadingOptions& s = o.shading;
-    s.for_hosts = !o.output.empty(); // the file takes light maps along
+    s.for_hosts = !o.output.empty() || !o.lods.empty(); // the file takes light maps along
     s.method = method_from_name(o.method);
     refuse_idle_options(o);
     s.effort = o.effort.value_or(s.effort);
@@ -149,7 +155,7 @@ void complete_materials(const ShadeOptions& o) {
 
 /// With none named, all three are written, called after the tree; otherwise those that are named.
 void name_outputs(ShadeOptions& o) {
-    if (!o.output.empty() || !o.image.empty() || !o.report.empty())
+    if (!o.output.empty() || !o.image.empty() || !o.report.empty() || !o.lods.empty())
         return;
     // Beside a file of one's own, "oak.glb" would be overwritten.
     const std::string stem = o.tree.stem() + (o.tree.is_species() ? "" : "-shaded");
@@ -172,12 +178,14 @@ void complete_outputs(ShadeOptions& o) {
         o.picture.ground = PictureGround::none;
     if (!o.output.empty())
         check_output(o.output, "the shaded tree", {".glb"});
-    else if (o.split_sides)
+    else if (o.split_sides && o.lods.empty())
         throw InputError("--split-sides shapes the shaded tree, which is not written; add -o OUT.glb");
     if (!o.image.empty())
         check_output(o.image, "the picture", {".png", ".exr", ".hdr"});
     if (!o.report.empty())
         check_output(o.report, "the report", {".json"});
+    if (!o.lods.empty())
+        check_lod_folder(o.lods);
     const fs::path tree = o.tree.file();
     check_distinct({tree, o.output, o.image, o.report});
     check_distinct({fs::path(o.surroundings.environment), o.output, o.image, o.report});

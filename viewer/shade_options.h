@@ -22,6 +22,7 @@ struct ShadeOptions {
     std::string leaf_reflectance, leaf_transmittance, bark_albedo; ///< colours; empty = the material's own
 
     std::filesystem::path output, image, report;
+    std::filesystem::path lods; ///< a folder; empty = none
     bool split_sides = false;
     std::string image_size = "1280x960";
     PictureOptions picture;     ///< complete after complete_shade_options()

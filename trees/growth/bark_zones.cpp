@@ -30,7 +30,7 @@ std::optional<Ageing> ageing(BarkKind kind) {
 
 /// All wood but twigs, where it does not age: grown-up, not ancient.
 constexpr float common_age = 0.7f;
-constexpr float thickest_twig_m = 0.012f, thickest_twig_share = 0.25f;
+constexpr float thickest_twig_m = 0.012f, thickest_twig_share = 0.16f;
 
 /// A part without those vertices that no triangle uses.
 TreePart with_triangles(const TreePart& bark, const std::vector<std::uint32_t>& triangles) {

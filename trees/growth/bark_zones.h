@@ -13,7 +13,7 @@ struct BarkZone {
     bool operator==(const BarkZone&) const = default;
 };
 
-/// The zone of a patch: twigs are thinner than 12 mm and than a quarter of the trunk; a birch's, an aspen's and a
+/// The zone of a patch: twigs are thinner than 12 mm and than a sixth of the trunk; a birch's, an aspen's and a
 /// pine's trunk is old at its foot and young above, in three steps whose borders are ragged; on other trees all wood
 /// beyond twigs looks alike.
 BarkZone bark_zone(const BarkPlace& place, const GrowthParameters& parameters, float trunk_radius_m,

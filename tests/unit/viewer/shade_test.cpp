@@ -93,6 +93,34 @@ TEST(Shade, EveryMethodShades) {
     }
 }
 
+TEST(Shade, WritesLevelsOfDetailWithTheirErrors) {
+    const TemporaryFolder folder;
+    const ProgramRun run =
+        run_kokage({"shade", "oak", "--leaves", "800", "--effort", "8", "--lods", "levels"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    for (const char* name : {"oak_lod0.glb", "oak_lod1.glb", "oak_lod2.glb", "oak_lod3.glb", "oak_impostor.glb",
+                             "oak_lods.png", "oak_lods.json"}) {
+        EXPECT_TRUE(std::filesystem::is_regular_file(folder / "levels" / name)) << name;
+        EXPECT_NE(run.output.find(name), std::string::npos) << name;
+    }
+    EXPECT_FALSE(std::filesystem::exists(folder / "oak.glb")) << "what was not asked for";
+    const Json levels = Json::parse(read_text(folder / "levels" / "oak_lods.json")).at("levels");
+    ASSERT_EQ(levels.size(), 5u);
+    EXPECT_EQ(levels[0]["image_mre"], 0.0) << "the full tree is the reference";
+    for (int level = 1; level <= 3; ++level) {
+        const Json& row = levels[std::size_t(level)];
+        EXPECT_NEAR(row["leaf_area_m2"].get<double>() / levels[0]["leaf_area_m2"].get<double>(), 1, 0.01);
+        EXPECT_NEAR(row["mean_leaf_radiance"].get<double>() / levels[0]["mean_leaf_radiance"].get<double>(), 1, 0.01);
+        EXPECT_GT(row["image_mre"].get<double>(), 0);
+        EXPECT_LT(row["triangles"], levels[std::size_t(level) - 1]["triangles"]);
+    }
+    EXPECT_LT(levels[4]["triangles"], 20);
+    // A file in the folder's place is found before the work.
+    const ProgramRun refused = run_kokage({"shade", "oak", "--lods", "levels/oak_lods.png"}, folder.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.errors.find("--lods"), std::string::npos) << refused.errors;
+}
+
 TEST(Shade, FilesAreShadedUnderANewNameAndAreTheSameTree) {
     TemporaryFolder folder;
     ASSERT_EQ(run_kokage({"grow", "--leaves", "200", "-o", "an oak.glb", "--quiet"}, folder.path()).status, 0);
@@ -230,7 +258,8 @@ TEST(Shade, DarknessIsWarnedOf) {
     const ProgramRun run =
         run_kokage(small_shade({"--environment", "constant:0", "--report", "r.json"}), folder.path());
     EXPECT_NE(run.errors.find("kokage: warning: no light reaches the tree"), std::string::npos) << run.errors;
-    EXPECT_TRUE(warnings_of(folder, {"--environment", "constant:0", "--light", "point:0,5,0,1"}).empty());
+    EXPECT_TRUE(
+        warnings_of(folder, {"--environment", "constant:0", "--light", "point:0,5,0,1", "--effort", "16"}).empty());
 }
 
 TEST(Shade, ASunThatHasSetIsWarnedOf) {

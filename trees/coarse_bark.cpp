@@ -1,0 +1,197 @@
+#include "trees/coarse_bark.h"
+
+#include "common/geometry/point_tree.h"
+#include "common/geometry/triangle_topology.h"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <meshoptimizer.h>
+#include <numeric>
+#include <set>
+
+namespace kokage {
+namespace {
+
+/// A connected piece of bark: on a grown tree, a branch.
+struct Piece {
+    std::vector<std::uint32_t> triangles;
+    double area = 0, volume = 0;
+    /// Radius of the tube that has this volume and surface; pieces that are not closed are thick as they are large.
+    double thickness() const {
+        const double from_volume = area > 0 ? 2 * std::abs(volume) / area : 0;
+        return std::min(from_volume, std::sqrt(area));
+    }
+};
+
+std::vector<Piece> find_pieces(const TreePart& bark) {
+    const std::vector<std::uint32_t> component =
+        connected_components(triangle_neighbours(bark.triangles, weld(bark.positions)));
+    std::vector<Piece> pieces(component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1u);
+    std::vector<glm::dvec3> origin(pieces.size(), glm::dvec3(0.0));
+    for (std::size_t t = 0; t < component.size(); ++t) {
+        Piece& piece = pieces[component[t]];
+        const glm::dvec3 a(bark.positions[bark.triangles[t].x]), b(bark.positions[bark.triangles[t].y]),
+            c(bark.positions[bark.triangles[t].z]);
+        if (piece.triangles.empty())
+            origin[component[t]] = a;
+        const glm::dvec3 o = origin[component[t]];
+        piece.triangles.push_back(std::uint32_t(t));
+        piece.area += 0.5 * glm::length(glm::cross(b - a, c - a));
+        piece.volume += glm::dot(a - o, glm::cross(b - o, c - o)) / 6;
+    }
+    return pieces;
+}
+
+/// Which triangles stay: whole pieces, the thickest, until they have `most_whole` triangles; further pieces, to be
+/// simplified, until there are `most` in all.
+struct Kept {
+    std::vector<std::uint32_t> whole, reduced;
+};
+Kept thick_triangles(const std::vector<Piece>& pieces, std::size_t most_whole, std::size_t most) {
+    std::vector<std::size_t> order(pieces.size());
+    std::iota(order.begin(), order.end(), std::size_t(0));
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return pieces[a].thickness() > pieces[b].thickness(); });
+    Kept kept;
+    for (const std::size_t i : order) {
+        const std::size_t taken = kept.whole.size() + kept.reduced.size(), more = pieces[i].triangles.size();
+        if (taken > 0 && taken + more > most)
+            break;
+        std::vector<std::uint32_t>& where =
+            kept.reduced.empty() && taken + more <= most_whole ? kept.whole : kept.reduced;
+        where.insert(where.end(), pieces[i].triangles.begin(), pieces[i].triangles.end());
+    }
+    std::sort(kept.whole.begin(), kept.whole.end());
+    std::sort(kept.reduced.begin(), kept.reduced.end());
+    return kept;
+}
+
+/// The part's triangles `kept`, with about `target` of them left after edge collapses. Corners are the part's vertices.
+std::vector<glm::uvec3> simplified(const TreePart& fine, const std::vector<std::uint32_t>& kept, std::size_t target) {
+    if (kept.empty())
+        return {};
+    std::vector<std::uint32_t> indices;
+    indices.reserve(kept.size() * 3);
+    for (const std::uint32_t t : kept)
+        for (std::size_t c = 0; c < 3; ++c)
+            indices.push_back(fine.triangles[t][c]);
+    std::vector<std::uint32_t> result(indices.size());
+    // No limit on the error: what has the least goes first, and the count decides.
+    result.resize(meshopt_simplify(result.data(), indices.data(), indices.size(), &fine.positions[0].x,
+                                   fine.positions.size(), sizeof(glm::vec3), target * 3, 1.f, 0, nullptr));
+    std::vector<glm::uvec3> triangles(result.size() / 3);
+    for (std::size_t t = 0; t < triangles.size(); ++t)
+        triangles[t] = {result[3 * t], result[3 * t + 1], result[3 * t + 2]};
+    return triangles;
+}
+
+/// Area centroids of the patches of some triangles.
+std::map<std::uint32_t, glm::vec3> patch_centres(const TreePart& part, const std::vector<std::uint32_t>& triangles) {
+    std::map<std::uint32_t, std::pair<glm::dvec3, double>> sums;
+    for (const std::uint32_t t : triangles) {
+        const glm::dvec3 a(part.positions[part.triangles[t].x]), b(part.positions[part.triangles[t].y]),
+            c(part.positions[part.triangles[t].z]);
+        const double area = glm::length(glm::cross(b - a, c - a)) + 1e-30;
+        auto& [sum, weight] = sums[part.triangle_patch[t]];
+        sum += area * (a + b + c) / 3.0;
+        weight += area;
+    }
+    std::map<std::uint32_t, glm::vec3> centres;
+    for (const auto& [patch, sum] : sums)
+        centres[patch] = glm::vec3(sum.first / sum.second);
+    return centres;
+}
+
+/// A part of the triangles, sorted by patch; `patch_of` names each one's coarse patch.
+TreePart assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles,
+                  const std::vector<std::uint32_t>& patch_of) {
+    TreePart part;
+    part.kind = TreePartKind::bark;
+    part.material = fine.material;
+    std::vector<std::uint32_t> order(triangles.size());
+    std::iota(order.begin(), order.end(), 0u);
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::uint32_t a, std::uint32_t b) { return patch_of[a] < patch_of[b]; });
+    std::vector<std::uint32_t> index(fine.positions.size(), ~0u);
+    for (const std::uint32_t t : order) {
+        glm::uvec3 corners = triangles[t];
+        for (std::size_t c = 0; c < 3; ++c) {
+            const std::uint32_t vertex = corners[c];
+            if (index[vertex] == ~0u) {
+                index[vertex] = std::uint32_t(part.positions.size());
+                part.positions.push_back(fine.positions[vertex]);
+                part.normals.push_back(fine.normals[vertex]);
+                if (!fine.uvs.empty())
+                    part.uvs.push_back(fine.uvs[vertex]);
+            }
+            corners[c] = index[vertex];
+        }
+        part.triangles.push_back(corners);
+        part.triangle_patch.push_back(patch_of[t]);
+    }
+    return part;
+}
+
+} // namespace
+
+CoarseBark coarse_bark(const TreePart& fine, double share) {
+    CoarseBark result;
+    result.part.kind = TreePartKind::bark;
+    result.part.material = fine.material;
+    if (fine.triangles.empty())
+        return result;
+    const std::size_t target =
+        std::max<std::size_t>(4, std::size_t(std::lround(double(fine.triangles.size()) * share)));
+    // Straight thick wood would lose all its rings, and with them the course of light along it: it stays as it is.
+    const Kept chosen = thick_triangles(find_pieces(fine), target / 2, 2 * target);
+    std::vector<glm::uvec3> triangles =
+        simplified(fine, chosen.reduced, target - std::min(target, chosen.whole.size()));
+    for (const std::uint32_t t : chosen.whole)
+        triangles.push_back(fine.triangles[t]);
+    std::vector<std::uint32_t> kept = chosen.whole;
+    kept.insert(kept.end(), chosen.reduced.begin(), chosen.reduced.end());
+    std::sort(kept.begin(), kept.end());
+
+    // A triangle goes to the patch that its first corner was in; what no triangle is left of, to the nearest that has.
+    std::vector<std::uint32_t> patch_of_vertex(fine.positions.size(), ~0u);
+    for (const std::uint32_t t : kept)
+        for (std::size_t c = 0; c < 3; ++c)
+            if (patch_of_vertex[fine.triangles[t][c]] == ~0u)
+                patch_of_vertex[fine.triangles[t][c]] = fine.triangle_patch[t];
+    std::map<std::uint32_t, std::uint32_t> number; // of fine patches that stay
+    for (const glm::uvec3& t : triangles)
+        number.try_emplace(patch_of_vertex[t.x], 0u);
+    for (auto& [patch, own] : number)
+        own = result.patches++;
+    std::vector<std::uint32_t> patch_of;
+    for (const glm::uvec3& t : triangles)
+        patch_of.push_back(number.at(patch_of_vertex[t.x]));
+    const std::map<std::uint32_t, glm::vec3> centres = patch_centres(fine, kept);
+    std::vector<glm::vec3> places;
+    std::vector<std::uint32_t> numbers;
+    std::set<std::uint32_t> untouched;
+    for (const std::uint32_t t : chosen.whole)
+        untouched.insert(fine.triangle_patch[t]);
+    for (const auto& [patch, own] : number)
+        if (!untouched.contains(patch)) { // the others have all of their own light
+            places.push_back(centres.at(patch));
+            numbers.push_back(own);
+        }
+    const PointTree nearest(places, numbers);
+    for (std::size_t t = 0; t < fine.triangles.size(); ++t) {
+        const std::uint32_t patch = fine.triangle_patch[t];
+        if (t > 0 && patch == fine.triangle_patch[t - 1])
+            continue;
+        const auto own = number.find(patch);
+        const auto centre = centres.find(patch);
+        result.stands_for.emplace_back(patch, own != number.end() ? own->second
+                                              : centre == centres.end() || places.empty()
+                                                  ? ~0u
+                                                  : nearest.nearest(centre->second).index);
+    }
+    result.part = assemble(fine, triangles, patch_of);
+    return result;
+}
+
+} // namespace kokage
