@@ -295,6 +295,50 @@ class CountingProgress : public Progress {
     int advances = 0;
 };
 
+// Twigs in shade die: with a high need of light leaves stand higher, and none are lost.
+TEST(Growth, ShadedTwigsAreShedAndTheirLeavesStandElsewhere) {
+    GrowthParameters parameters = oak_with(20000);
+    const auto mean_height = [&](double need) {
+        parameters.light_need = need;
+        const Tree tree = grow(parameters);
+        EXPECT_EQ(tree.leaves.size(), 20000u);
+        double sum = 0;
+        for (const Leaf& leaf : tree.leaves)
+            sum += leaf.centre.y;
+        return sum / 20000;
+    };
+    const double all = mean_height(0), some = mean_height(0.15), few = mean_height(0.3);
+    EXPECT_GT(some, 1.01 * all);
+    EXPECT_GT(few, 1.02 * some);
+}
+
+TEST(Growth, BranchesTurnUpDownAndToTheLightAsAsked) {
+    GrowthParameters parameters = oak_with(6000);
+    const auto mean_rise = [](const Tree& tree) {
+        double rise = 0, length = 0;
+        for (const Branch& branch : tree.skeleton.branches)
+            if (branch.order >= 2)
+                for (std::size_t i = 0; i + 1 < branch.nodes.size(); ++i) {
+                    const glm::vec3 step = branch.nodes[i + 1].position - branch.nodes[i].position;
+                    rise += step.y;
+                    length += glm::length(step);
+                }
+        return rise / length;
+    };
+    parameters.branch_up = 0;
+    const double level = mean_rise(grow(parameters));
+    parameters.branch_up = 0.5;
+    EXPECT_GT(mean_rise(grow(parameters)), level + 0.02);
+    parameters.branch_up = -0.5;
+    EXPECT_LT(mean_rise(grow(parameters)), level - 0.02);
+    parameters.branch_up = 0;
+    parameters.branch_to_light = 1;
+    EXPECT_GT(mean_rise(grow(parameters)), level + 0.02) << "the sky is above";
+    parameters.branch_to_light = 0;
+    parameters.twig_sag = 120;
+    EXPECT_LT(mean_rise(grow(parameters)), level - 0.1);
+}
+
 TEST(Growth, StopsWhenAsked) {
     CountingProgress progress;
     EXPECT_THROW(grow(oak_with(1000), progress), Stopped);
