@@ -3,6 +3,7 @@
 #include "tests/unit/trees/growth_shape.h"
 #include "trees/growth.h"
 #include "trees/growth/leaf_shape.h"
+#include "trees/growth/sky_light.h"
 #include "trees/patches.h"
 
 #include <cstring>
@@ -295,21 +296,29 @@ class CountingProgress : public Progress {
     int advances = 0;
 };
 
-// Twigs in shade die: with a high need of light leaves stand higher, and none are lost.
+// Twigs in shade die: with a high need of light leaves stand in more light, and none are lost.
 TEST(Growth, ShadedTwigsAreShedAndTheirLeavesStandElsewhere) {
     GrowthParameters parameters = oak_with(20000);
-    const auto mean_height = [&](double need) {
+    const auto centres = [&](double need) {
         parameters.light_need = need;
-        const Tree tree = grow(parameters);
-        EXPECT_EQ(tree.leaves.size(), 20000u);
-        double sum = 0;
-        for (const Leaf& leaf : tree.leaves)
-            sum += leaf.centre.y;
-        return sum / 20000;
+        std::vector<glm::vec3> places;
+        for (const Leaf& leaf : grow(parameters).leaves)
+            places.push_back(leaf.centre);
+        EXPECT_EQ(places.size(), 20000u);
+        return places;
     };
-    const double all = mean_height(0), some = mean_height(0.15), few = mean_height(0.3);
-    EXPECT_GT(some, 1.01 * all);
-    EXPECT_GT(few, 1.02 * some);
+    const std::vector<glm::vec3> all = centres(0);
+    const SkyLight light(all, 20000 * mean_leaf_area(parameters));
+    const auto darkest_tenth = [&](const std::vector<glm::vec3>& places) {
+        std::vector<float> lights;
+        for (const glm::vec3& place : places)
+            lights.push_back(light.relative(place));
+        std::sort(lights.begin(), lights.end());
+        return lights[lights.size() / 10];
+    };
+    const float before = darkest_tenth(all), some = darkest_tenth(centres(0.3)), few = darkest_tenth(centres(0.4));
+    EXPECT_GT(some, 1.02f * before);
+    EXPECT_GT(few, 1.05f * some);
 }
 
 TEST(Growth, BranchesTurnUpDownAndToTheLightAsAsked) {
