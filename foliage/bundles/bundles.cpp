@@ -215,14 +215,15 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
 SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environment, Progress& progress,
                                       WorkReport& report) {
     const LightAndMatter now{environment, optics_, options_.max_bounces};
+    const SamplingError sampling{lit.sampling_error, usual_sampling_error(drawn_->effort(), mean_leaf_albedo(scene_))};
     auto measure = [&] {
         Stopwatch watch;
-        const SolutionError error = model_error_->measure(lit.sampling_error, lit.light.radiance, lit.half_differences,
-                                                          now, options_.seed, progress, report);
+        const SolutionError error = model_error_->measure(sampling, lit.light.radiance, lit.half_differences, now,
+                                                          options_.seed, progress, report);
         report.stages.push_back({"check by paths", watch.cpu(), watch.wall()});
         return error;
     };
-    const std::optional<SolutionError> known = model_error_->known(lit.sampling_error, now);
+    const std::optional<SolutionError> known = model_error_->known(sampling, now);
     const SolutionError error = known ? *known : measure();
     // One measurement may decide to go on, but not where to end.
     if (adaptive_ && error.measured && !model_error_->measured_twice() && !more_lines(lit, error))

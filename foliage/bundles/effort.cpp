@@ -34,6 +34,10 @@ double brightness(double leaf_albedo) {
     return std::clamp((leaf_albedo - kDarkAlbedo) / (kBrightAlbedo - kDarkAlbedo), 0.0, 1.0);
 }
 
+double reference_directions(double leaf_albedo) {
+    return std::lerp(kReferenceDirections[0], kReferenceDirections[1], brightness(leaf_albedo));
+}
+
 } // namespace
 
 double mean_leaf_albedo(const PatchScene& scene) {
@@ -62,9 +66,14 @@ BundleEffort effort_of_directions(int directions, double leaf_albedo, std::uint6
 }
 
 int directions_for_error(double sampling_error, double leaf_albedo) {
-    const double reference = std::lerp(kReferenceDirections[0], kReferenceDirections[1], brightness(leaf_albedo));
     const double ratio = kReferenceError / std::max(sampling_error, 1e-6);
-    return int(std::clamp(std::ceil(kMargin * reference * ratio * ratio), double(kLeastDirections), double(kMostDirections)));
+    return int(std::clamp(std::ceil(kMargin * reference_directions(leaf_albedo) * ratio * ratio),
+                          double(kLeastDirections), double(kMostDirections)));
+}
+
+double usual_sampling_error(const BundleEffort& effort, double leaf_albedo) {
+    const int directions = effort.lines.sky_directions + effort.lines.link_directions;
+    return kReferenceError * std::sqrt(reference_directions(leaf_albedo) / std::max(directions, 1));
 }
 
 LightPlan plan_lights(const Environment& environment, const BundleEffort& effort, double negligible) {

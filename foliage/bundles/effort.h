@@ -29,6 +29,8 @@ double mean_leaf_albedo(const PatchScene& scene);
 BundleEffort effort_of_directions(int directions, double leaf_albedo, std::uint64_t seed);
 /// The directions that a sampling error (an MRE) is expected to need; the solution's own estimate then decides.
 int directions_for_error(double sampling_error, double leaf_albedo);
+/// The other way round: the sampling error of an effort under sky and sun.
+double usual_sampling_error(const BundleEffort& effort, double leaf_albedo);
 
 /// How one distant light is drawn.
 struct LightEffort {

@@ -77,17 +77,23 @@ SolutionError ModelError::error(double sampling_error) const {
             std::sqrt(std::max(measured_->beyond, 0.0)), true};
 }
 
-std::optional<SolutionError> ModelError::known(double sampling_error, const LightAndMatter& now) {
-    constexpr double kTolerated = 1.35, kMuchMoved = 1.0 / 7;
-    const double assumed = std::hypot(sampling_error, assumed_);
-    if (std::hypot(sampling_error, largest_) < kTolerated * assumed)
-        return SolutionError{assumed, assumed_, false};
-    if (!measured_ || moved(measured_->conditions, conditions(now)) > kMuchMoved)
-        return {};
-    return error(sampling_error);
+/// 1 in ordinary light. Light that differs a fifth as much from line to line as it usually does, or less, is that much
+/// more even over a side, too: in a furnace it is the same everywhere.
+double ModelError::evenness(const SamplingError& sampling) {
+    return sampling.usual > 0 ? std::min(5 * sampling.shown / sampling.usual, 1.0) : 1.0;
 }
 
-SolutionError ModelError::measure(double sampling_error, const std::vector<Rgb>& radiance,
+std::optional<SolutionError> ModelError::known(const SamplingError& sampling, const LightAndMatter& now) {
+    constexpr double kTolerated = 1.35, kMuchMoved = 1.0 / 7;
+    const double model = evenness(sampling) * assumed_, all = std::hypot(sampling.shown, model);
+    if (std::isfinite(largest_) && std::hypot(sampling.shown, evenness(sampling) * largest_) < kTolerated * all)
+        return SolutionError{all, model, false};
+    if (!measured_ || moved(measured_->conditions, conditions(now)) > kMuchMoved)
+        return {};
+    return error(sampling.shown);
+}
+
+SolutionError ModelError::measure(const SamplingError& sampling, const std::vector<Rgb>& radiance,
                                   const std::vector<Rgb>& half_differences, const LightAndMatter& now,
                                   std::uint64_t seed, Progress& progress, WorkReport& report) {
     if (!paths_)
@@ -105,11 +111,11 @@ SolutionError ModelError::measure(double sampling_error, const std::vector<Rgb>&
     // counts only where paths are uncertain.
     const double guess = std::isfinite(largest_) ? 0.2 : 0.3; // how far off the assumed error would be, about
     const double trust = 1 / (1 + std::pow(found.uncertainty / guess, 4));
-    next.beyond =
-        trust * (found.error * found.error - sampling_error * sampling_error) + (1 - trust) * assumed_ * assumed_;
+    next.beyond = trust * (found.error * found.error - sampling.shown * sampling.shown) +
+                  (1 - trust) * std::pow(evenness(sampling) * assumed_, 2);
     ++next.times;
     measured_ = std::move(next);
-    return error(sampling_error);
+    return error(sampling.shown);
 }
 
 } // namespace kokage::bundles

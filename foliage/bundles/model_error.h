@@ -15,6 +15,11 @@ struct SolutionError {
     bool measured = false;
 };
 
+/// What halves of the lines show (an MRE), and what so many lines usually show.
+struct SamplingError {
+    double shown = 0, usual = 0;
+};
+
 /// What a solution is for. References must outlive it.
 struct LightAndMatter {
     const Environment& environment;
@@ -24,16 +29,16 @@ struct LightAndMatter {
 
 class ModelError {
   public:
-    /// `assumed`: of crowns of many whole leaves of about one size. The scene must outlive it.
+    /// `assumed`: of crowns of many whole leaves of about one size under ordinary light. The scene must outlive it.
     ModelError(const PatchScene& scene, const Facets& facets, double assumed);
 
     /// The error where nothing need be measured: the sampling error, which halves of the lines show, dwarfs what there
     /// may be beside it; or there was a measurement since when no light moved, no leaf changed its colour, and at most
     /// a seventh of the light came to come from elsewhere (another sky, a stronger lamp). Empty where there is need.
-    std::optional<SolutionError> known(double sampling_error, const LightAndMatter& now);
+    std::optional<SolutionError> known(const SamplingError& sampling, const LightAndMatter& now);
     /// Measures, by paths to a few leaves, and remembers. `radiance` and `half_differences` per side. Called again for
     /// the same solution, it takes other leaves and other paths and gives what both say together.
-    SolutionError measure(double sampling_error, const std::vector<Rgb>& radiance,
+    SolutionError measure(const SamplingError& sampling, const std::vector<Rgb>& radiance,
                           const std::vector<Rgb>& half_differences, const LightAndMatter& now, std::uint64_t seed,
                           Progress& progress, WorkReport& report);
     /// True if what known() tells was measured twice. Who stops at the first estimate that is low enough meets lucky
@@ -59,6 +64,7 @@ class ModelError {
     };
     Conditions conditions(const LightAndMatter& now);
     static double moved(const Conditions& before, const Conditions& now);
+    static double evenness(const SamplingError& sampling);
     SolutionError error(double sampling_error) const;
 
     const PatchScene& scene_;

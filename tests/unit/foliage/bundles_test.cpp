@@ -68,7 +68,7 @@ TEST(Bundles, ASmallLeafSeesTheSkyAboveTheHorizon) {
 }
 
 TEST(Bundles, AFurnaceIsOneEverywhere) {
-    test::SmallTree small = test::ball_on_a_skeleton(1000, 3, {{0.5f, 0.9f, 0}, {0.5f, 0.1f, 1}});
+    test::SmallTree small = test::ball_on_a_skeleton(2600, 3, {{0.5f, 0.9f, 0}, {0.5f, 0.1f, 1}});
     ShadingOptions options = bundles_options(40);
     const Solution solution = shade(small, test::constant_environment(glm::vec3(1)), options);
     double mean = 0, largest = 0;
@@ -80,6 +80,8 @@ TEST(Bundles, AFurnaceIsOneEverywhere) {
             }
     EXPECT_LT(mean, 0.001);
     EXPECT_LT(largest, 0.005);
+    ASSERT_TRUE(solution.estimated_error);
+    EXPECT_LT(*solution.estimated_error, 0.003) << "where light is even, one radiance a side is no error";
 }
 
 TEST(Bundles, EnergyBalancesInTheOpen) {
