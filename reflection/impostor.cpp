@@ -65,15 +65,71 @@ void paste(const Image& from, int x0, int y0, Image& into) {
         std::copy_n(from.at(0, y), std::size_t(from.width) * std::size_t(from.channels), into.at(x0, y0 + y));
 }
 
-/// The cutoff that leaves as many solid texels as the alphas add up to.
-float covering_cutoff(const Image& alpha) {
+/// The cutoff that leaves as many solid texels as the alphas add up to, times `share`.
+float covering_cutoff(const Image& alpha, double share) {
     double sum = 0;
     for (const float a : alpha.pixels)
         sum += double(a);
     std::vector<float> sorted = alpha.pixels;
-    const std::size_t solid = std::clamp<std::size_t>(std::size_t(std::lround(sum)), 1, sorted.size());
+    const std::size_t solid = std::clamp<std::size_t>(std::size_t(std::lround(share * sum)), 1, sorted.size());
     std::nth_element(sorted.begin(), sorted.begin() + std::ptrdiff_t(solid - 1), sorted.end(), std::greater<>());
     return std::clamp(sorted[solid - 1], 1.f / 255, 1.f);
+}
+
+/// Colours as the solid texels have to show them: each the mean of its neighbourhood by alpha, so that sparse needles
+/// count beside dense wood, which the cutoff favours; then scaled so that solid texels have the views' mean colour.
+Image color_of_solid(const Image& color, const Image& alpha, float cutoff) {
+    Image result = color;
+    glm::dvec3 sent(0.0), shown(0.0);
+    double covered = 0, solid = 0;
+    for (int y = 0; y < color.height; ++y)
+        for (int x = 0; x < color.width; ++x) {
+            glm::dvec3 sum(0.0);
+            double weight = 0;
+            for (int j = std::max(0, y - 1); j <= std::min(color.height - 1, y + 1); ++j)
+                for (int i = std::max(0, x - 1); i <= std::min(color.width - 1, x + 1); ++i) {
+                    const double w = double(alpha.at(i, j)[0]) * (i == x && j == y ? 2 : 1);
+                    sum += w * glm::dvec3(color.at(i, j)[0], color.at(i, j)[1], color.at(i, j)[2]);
+                    weight += w;
+                }
+            const float own = alpha.at(x, y)[0];
+            covered += double(own);
+            solid += own >= cutoff ? 1 : 0;
+            for (std::size_t c = 0; c < 3; ++c) {
+                if (weight > 0)
+                    result.at(x, y)[c] = float(sum[c] / weight);
+                sent[c] += double(own * color.at(x, y)[c]);
+                shown[c] += own >= cutoff ? double(result.at(x, y)[c]) : 0;
+            }
+        }
+    for (std::size_t i = 0; i < result.pixels.size(); ++i)
+        if (shown[i % 3] > 0 && covered > 0)
+            result.pixels[i] *= float(sent[i % 3] / covered * solid / shown[i % 3]);
+    return result;
+}
+
+/// Alphas are multiples of 1/16: a little noise tells texels of the same alpha apart, so that any number of them can be
+/// solid; no texel becomes or ceases to be empty.
+void spread_alphas(Image& alpha) {
+    for (std::size_t i = 0; i < alpha.pixels.size(); ++i)
+        if (alpha.pixels[i] > 0 && alpha.pixels[i] < 1)
+            alpha.pixels[i] -= float(hash64(i) >> 40) * 0x1p-24f / 17;
+}
+
+/// How much of each coarse pixel a scene covers, from some sides between the first two cards.
+std::vector<float> coarse_coverage(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                                   const ViewFrame& first, float azimuth, int cards, Progress& progress) {
+    constexpr int sides = 6, height = 24, samples = 16;
+    const int width = std::clamp(int(std::lround(height * first.half_width / first.half_height)), 2, 4 * height);
+    std::vector<float> coverage;
+    for (int side = 0; side < sides; ++side) {
+        ViewFrame frame = first;
+        const float angle = azimuth + kPi / float(cards) * (float(side) + 0.5f) / sides;
+        frame.towards_viewer = {std::sin(angle), 0, std::cos(angle)};
+        const CapturedView view = capture_view(scene, queries, environment, frame, width, height, samples, progress);
+        coverage.insert(coverage.end(), view.alpha.pixels.begin(), view.alpha.pixels.end());
+    }
+    return coverage;
 }
 
 float solid_percentile_99(const Image& color, const Image& alpha, float cutoff) {
@@ -86,6 +142,31 @@ float solid_percentile_99(const Image& color, const Image& alpha, float cutoff) 
     const std::size_t at = values.size() * 99 / 100;
     std::nth_element(values.begin(), values.begin() + std::ptrdiff_t(at), values.end());
     return values[at] > 0 && std::isfinite(values[at]) ? values[at] : 1.f;
+}
+
+/// Cards stand one behind the other and together cover more than each. Fewer texels are then made solid, down to a
+/// quarter, if that brings what is covered, seen from afar, nearer to the scene's: it does for bare trees, while dense
+/// crowns would only lose their outline.
+void choose_cutoff(Impostor& impostor, const std::vector<float>& wanted, const Environment& environment, float azimuth,
+                   int cards, Progress& progress) {
+    double least = std::numeric_limits<double>::infinity();
+    float best = 0.5f;
+    for (const double share : {1.0, 0.85, 0.7, 0.55, 0.4, 0.25}) {
+        impostor.alpha_cutoff = covering_cutoff(impostor.alpha, share);
+        ImpostorScene scene;
+        make_impostor_scene(impostor, scene);
+        const RayQueries queries(scene.patches);
+        const std::vector<float> covered =
+            coarse_coverage(scene.shaded, queries, environment, impostor.faces[0], azimuth, cards, progress);
+        double error = 0;
+        for (std::size_t i = 0; i < wanted.size(); ++i)
+            error += std::abs(double(covered[i] - wanted[i]));
+        if (error < least) {
+            least = error;
+            best = impostor.alpha_cutoff;
+        }
+    }
+    impostor.alpha_cutoff = best;
 }
 
 } // namespace
@@ -185,7 +266,10 @@ Impostor make_impostor(const ShadedScene& scene, const RayQueries& queries, cons
         paste(view.normal, face % 2 * width, face / 2 * size, impostor.normal);
         impostor.faces.push_back(frame);
     }
-    impostor.alpha_cutoff = covering_cutoff(impostor.alpha);
+    spread_alphas(impostor.alpha);
+    choose_cutoff(impostor, coarse_coverage(scene, queries, environment, first, azimuth, cards, progress), environment,
+                  azimuth, cards, progress);
+    impostor.color = color_of_solid(impostor.color, impostor.alpha, impostor.alpha_cutoff);
     impostor.scale = solid_percentile_99(impostor.color, impostor.alpha, impostor.alpha_cutoff);
     return impostor;
 }

@@ -37,7 +37,7 @@ CapturedView capture_view(const ShadedScene& scene, const RayQueries& queries, c
 struct Impostor {
     std::vector<ViewFrame> faces; ///< two a card: front, back; face f has column f % 2, row f / 2 of the atlas
     Image color, alpha, normal;   ///< the atlas; normals in the card's frame: x right, y up, z to the viewer
-    float alpha_cutoff = 0.5f;    ///< keeps the covered area: as many texels are solid as the views cover in all
+    float alpha_cutoff = 0.5f;    ///< such that the cards together cover about what the scene does
     float scale = 1;              ///< the colour that a file stores as 1: the 99th percentile of solid texels
 };
 

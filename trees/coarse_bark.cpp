@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <meshoptimizer.h>
 #include <numeric>
@@ -15,6 +16,7 @@ namespace {
 
 /// A connected piece of bark: on a grown tree, a branch.
 struct Piece {
+    std::size_t part = 0;
     std::vector<std::uint32_t> triangles;
     double area = 0, volume = 0;
     /// Radius of the tube that has this volume and surface; pieces that are not closed are thick as they are large.
@@ -24,10 +26,12 @@ struct Piece {
     }
 };
 
-std::vector<Piece> find_pieces(const TreePart& bark) {
+void add_pieces(const TreePart& bark, std::size_t part, std::vector<Piece>& all) {
     const std::vector<std::uint32_t> component =
         connected_components(triangle_neighbours(bark.triangles, weld(bark.positions)));
     std::vector<Piece> pieces(component.empty() ? 0 : *std::max_element(component.begin(), component.end()) + 1u);
+    for (Piece& piece : pieces)
+        piece.part = part;
     std::vector<glm::dvec3> origin(pieces.size(), glm::dvec3(0.0));
     for (std::size_t t = 0; t < component.size(); ++t) {
         Piece& piece = pieces[component[t]];
@@ -40,30 +44,39 @@ std::vector<Piece> find_pieces(const TreePart& bark) {
         piece.area += 0.5 * glm::length(glm::cross(b - a, c - a));
         piece.volume += glm::dot(a - o, glm::cross(b - o, c - o)) / 6;
     }
-    return pieces;
+    std::move(pieces.begin(), pieces.end(), std::back_inserter(all));
 }
 
-/// Which triangles stay: whole pieces, the thickest, until they have `most_whole` triangles; further pieces, to be
-/// simplified, until there are `most` in all.
+/// Which triangles of a part stay: whole pieces, and others to be simplified.
 struct Kept {
     std::vector<std::uint32_t> whole, reduced;
 };
-Kept thick_triangles(const std::vector<Piece>& pieces, std::size_t most_whole, std::size_t most) {
+
+/// Of all parts together: whole pieces, the thickest, until they have `most_whole` triangles; further pieces until
+/// there are `most` in all.
+std::vector<Kept> choose_thick(const std::vector<Piece>& pieces, std::size_t parts, std::size_t most_whole,
+                               std::size_t most) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pieces[a].thickness() > pieces[b].thickness(); });
-    Kept kept;
+    std::vector<Kept> kept(parts);
+    std::size_t taken = 0;
+    bool all_whole = true;
     for (const std::size_t i : order) {
-        const std::size_t taken = kept.whole.size() + kept.reduced.size(), more = pieces[i].triangles.size();
+        const std::size_t more = pieces[i].triangles.size();
         if (taken > 0 && taken + more > most)
             break;
-        std::vector<std::uint32_t>& where =
-            kept.reduced.empty() && taken + more <= most_whole ? kept.whole : kept.reduced;
+        taken += more;
+        all_whole = all_whole && taken <= most_whole;
+        Kept& own = kept[pieces[i].part];
+        std::vector<std::uint32_t>& where = all_whole ? own.whole : own.reduced;
         where.insert(where.end(), pieces[i].triangles.begin(), pieces[i].triangles.end());
     }
-    std::sort(kept.whole.begin(), kept.whole.end());
-    std::sort(kept.reduced.begin(), kept.reduced.end());
+    for (Kept& own : kept) {
+        std::sort(own.whole.begin(), own.whole.end());
+        std::sort(own.reduced.begin(), own.reduced.end());
+    }
     return kept;
 }
 
@@ -133,20 +146,11 @@ TreePart assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles
     return part;
 }
 
-} // namespace
-
-CoarseBark coarse_bark(const TreePart& fine, double share) {
+/// One part with what stays of it; `target`: how many triangles are to be left of those to be simplified.
+CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t target) {
     CoarseBark result;
-    result.part.kind = TreePartKind::bark;
-    result.part.material = fine.material;
-    if (fine.triangles.empty())
-        return result;
-    const std::size_t target =
-        std::max<std::size_t>(4, std::size_t(std::lround(double(fine.triangles.size()) * share)));
     // Straight thick wood would lose all its rings, and with them the course of light along it: it stays as it is.
-    const Kept chosen = thick_triangles(find_pieces(fine), target / 2, 2 * target);
-    std::vector<glm::uvec3> triangles =
-        simplified(fine, chosen.reduced, target - std::min(target, chosen.whole.size()));
+    std::vector<glm::uvec3> triangles = simplified(fine, chosen.reduced, target);
     for (const std::uint32_t t : chosen.whole)
         triangles.push_back(fine.triangles[t]);
     std::vector<std::uint32_t> kept = chosen.whole;
@@ -191,6 +195,30 @@ CoarseBark coarse_bark(const TreePart& fine, double share) {
                                                   : nearest.nearest(centre->second).index);
     }
     result.part = assemble(fine, triangles, patch_of);
+    return result;
+}
+
+} // namespace
+
+std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, double share) {
+    std::vector<Piece> pieces;
+    std::size_t count = 0;
+    for (std::size_t p = 0; p < fine.size(); ++p) {
+        add_pieces(*fine[p], p, pieces);
+        count += fine[p]->triangles.size();
+    }
+    const std::size_t target = std::max<std::size_t>(16, std::size_t(std::lround(double(count) * share)));
+    const std::vector<Kept> kept = choose_thick(pieces, fine.size(), target / 2, 2 * target);
+    std::size_t whole = 0, reduced = 0;
+    for (const Kept& own : kept) {
+        whole += own.whole.size();
+        reduced += own.reduced.size();
+    }
+    const double left = reduced ? std::min(1.0, double(target - std::min(target, whole)) / double(reduced)) : 0;
+    std::vector<CoarseBark> result;
+    for (std::size_t p = 0; p < fine.size(); ++p)
+        result.push_back(
+            coarse_part(*fine[p], kept[p], std::size_t(std::lround(left * double(kept[p].reduced.size())))));
     return result;
 }
 

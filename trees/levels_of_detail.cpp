@@ -167,17 +167,23 @@ void add_bark(const Tree& full, int level, LevelOfDetail& result) {
     double share = 1;
     for (int k = 0; k < level; ++k)
         share /= detail_ratio;
-    for (std::size_t p = 0; p < full.parts.size(); ++p) {
-        if (full.parts[p].kind != TreePartKind::bark)
-            continue;
-        CoarseBark coarse = coarse_bark(full.parts[p], share);
+    std::vector<const TreePart*> fine;
+    std::vector<std::size_t> place;
+    for (std::size_t p = 0; p < full.parts.size(); ++p)
+        if (full.parts[p].kind == TreePartKind::bark) {
+            fine.push_back(&full.parts[p]);
+            place.push_back(p);
+        }
+    std::vector<CoarseBark> all = coarse_bark(fine, share);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+        CoarseBark& coarse = all[i];
         for (std::uint32_t& patch : coarse.part.triangle_patch)
             patch += result.tree.bark_patch_count;
         for (const auto& [patch, other] : coarse.stands_for)
             result.stands_for[leaves + patch] =
                 other == ~0u ? ~0u : std::uint32_t(result.tree.leaves.size()) + result.tree.bark_patch_count + other;
         result.tree.bark_patch_count += coarse.patches;
-        result.tree.parts[p] = std::move(coarse.part);
+        result.tree.parts[place[i]] = std::move(coarse.part);
     }
 }
 
