@@ -2,6 +2,8 @@
 #include "tests/support/node.h"
 #include "tests/support/program_run.h"
 #include "tests/support/tree_files.h"
+#include "trees/growth.h"
+#include "trees/levels_of_detail.h"
 #include "trees/read_tree.h"
 
 namespace kokage {
@@ -35,6 +37,31 @@ TEST(Validator, FindsNoErrorInGrownTrees) {
     write_tree(folder / "shaded.glb", oak, &light);
     write_tree(folder / "split.glb", oak, &light, {.split_sides = true});
     expect_valid(modules, {folder / "plain.glb", folder / "shaded.glb", folder / "split.glb"});
+}
+
+TEST(Validator, FindsNoErrorInTreesOfAnySpeciesSeasonFormAndLevel) {
+    const std::string modules = node_modules_with("gltf-validator");
+    if (modules.empty())
+        GTEST_SKIP() << "skipped: node or the npm package gltf-validator is missing (npm ci in tests/validate)";
+    TemporaryFolder folder;
+    std::vector<std::filesystem::path> files;
+    for (const Species& species : all_species())
+        for (const Season season : {Season::summer, Season::winter, Season::blossom}) {
+            GrowthParameters p = species.parameters;
+            p.leaves = 120;
+            p.season = season;
+            p.leaf_form = season == Season::blossom ? LeafForm::alpha : p.leaf_form;
+            const Tree tree = grow(p);
+            const ShadedAttributes light = random_light(tree);
+            const LevelOfDetail level = level_of_detail(tree, 2);
+            const ShadedAttributes coarse = transfer_light(tree, light, level);
+            const std::string name = species.name + std::to_string(int(season));
+            files.push_back(folder / (name + ".glb"));
+            write_tree(files.back(), tree);
+            files.push_back(folder / (name + "_level.glb"));
+            write_tree(files.back(), level.tree, &coarse);
+        }
+    expect_valid(modules, files);
 }
 
 TEST(Validator, FindsTheErrorInABrokenFile) {
