@@ -26,7 +26,7 @@ TEST(Describe, JsonSaysTheSame) {
     EXPECT_EQ(json["leaves"]["count"], 500);
     EXPECT_EQ(json["branching"]["known"], true);
     EXPECT_EQ(json["branching"]["orders"][0]["branches"], 1);
-    EXPECT_EQ(json["surfaces"].size(), 2u);
+    EXPECT_EQ(json["surfaces"].size(), 3u); // bark of limbs, leaves, bark of twigs
 }
 
 TEST(Describe, WrongTreesAreRefusedInOneLine) {
