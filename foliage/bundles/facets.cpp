@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace kokage::bundles {
 namespace {
@@ -45,7 +46,8 @@ bool convex_at(const Outline& outline, int i) {
     const int n = outline.count;
     const glm::vec3 a = outline.corners[(i + n - 1) % n], b = outline.corners[i], c = outline.corners[(i + 1) % n];
     const glm::vec3 ab = b - a, bc = c - b;
-    return glm::dot(glm::cross(ab, bc), outline.normal) >= -1e-4f * glm::length(ab) * glm::length(bc);
+    const float turn = glm::dot(glm::cross(ab, bc), outline.normal);
+    return turn >= 0 || turn >= -1e-4f * glm::length(ab) * glm::length(bc);
 }
 
 /// Adds a triangle to an outline across a shared edge if the union stays flat, convex and equally textured.
@@ -87,7 +89,10 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
 class Builder {
   public:
     Builder(const PatchScene& scene, Facets& facets)
-        : scene_(scene), facets_(facets), centre_(facets.centre), scale_(float(facets.scale)) {}
+        : scene_(scene), facets_(facets), centre_(facets.centre), scale_(float(facets.scale)) {
+        constexpr float far = std::numeric_limits<float>::max();
+        columns_.fill({glm::vec3(far), glm::vec3(-far)});
+    }
 
     void add_patch(std::uint32_t index) {
         facets_.patch_first_facet.push_back(std::uint32_t(facets_.facets.size()));
@@ -108,7 +113,7 @@ class Builder {
             const float length = glm::length(cross);
             if (!(length > 1e-18f) || !std::isfinite(length))
                 continue;
-            const glm::vec3 normal = cross / length;
+            const glm::vec3 normal = cross * (1 / length);
             const auto mask = scene_.masked(triangle) ? scene_.triangle_mask[triangle] : std::int16_t(-1);
             if (outline.count > 0 && try_merge(outline, corner, mask, normal, 0.5f * length, bark))
                 continue;
@@ -123,6 +128,12 @@ class Builder {
                 outline.texture = texture_map(corner, normal);
         }
         flush(outline, index, bark);
+    }
+
+    void store_boxes() {
+        for (const Box& column : columns_)
+            if (column.low.x <= column.high.x)
+                facets_.boxes.push_back(column);
     }
 
     void store_groups() {
@@ -143,10 +154,23 @@ class Builder {
             return;
         const std::uint32_t facet = facet_for(outline, patch, bark);
         add_area(facets_.facets[facet], outline);
+        add_to_box(outline);
         add_polygon(outline,
                     bark ? (facets_.leaf_facet_count + 2 * (facet - facets_.leaf_facet_count)) | PolygonGroup::kBark
                          : facet);
         outline.count = 0;
+    }
+
+    /// Every polygon widens the box of the column that its first corner stands in.
+    void add_to_box(const Outline& outline) {
+        const glm::vec3 along =
+            (outline.corners[0] - facets_.low) * (float(kColumns) / glm::max(facets_.high - facets_.low, 1e-20f));
+        const auto column = [](float place) { return std::size_t(std::clamp(place, 0.f, float(kColumns - 1))); };
+        Box& box = columns_[column(along.z) * kColumns + column(along.x)];
+        for (int k = 0; k < outline.count; ++k) {
+            box.low = glm::min(box.low, outline.corners[k]);
+            box.high = glm::max(box.high, outline.corners[k]);
+        }
     }
 
     void add_polygon(const Outline& outline, std::uint32_t face) {
@@ -212,6 +236,8 @@ class Builder {
     const glm::vec3 centre_; ///< a float itself, so that differences from it are as exact as the positions are
     const float scale_;
     std::size_t first_facet_ = 0;
+    static constexpr int kColumns = 16; ///< in x and in z
+    std::array<Box, std::size_t(kColumns) * kColumns> columns_;
     static constexpr int kFewestCorners = 3;
     /// By corners, without and with masks.
     std::array<std::array<PolygonGroup, 2>, PolygonGroup::kMaxCorners - kFewestCorners + 1> groups_;
@@ -259,7 +285,8 @@ std::size_t PolygonGroup::bytes() const {
 }
 
 std::size_t Facets::bytes() const {
-    std::size_t sum = size_in_bytes(facets) + size_in_bytes(patch_first_facet) + size_in_bytes(patch_area);
+    std::size_t sum =
+        size_in_bytes(facets) + size_in_bytes(patch_first_facet) + size_in_bytes(patch_area) + size_in_bytes(boxes);
     for (const PolygonGroup& group : groups)
         sum += group.bytes();
     return sum;
@@ -268,12 +295,14 @@ std::size_t Facets::bytes() const {
 Facets make_facets(const PatchScene& scene) {
     Facets facets;
     facets.patch_count = std::uint32_t(scene.patches.size());
-    glm::dvec3 low(0.0), high(0.0);
-    for (std::size_t i = 0; i < scene.positions.size(); ++i) {
-        const glm::dvec3 position(scene.positions[i]);
-        low = i ? glm::min(low, position) : position;
-        high = i ? glm::max(high, position) : position;
+    glm::vec3 least(0.f), most(0.f);
+    if (!scene.positions.empty())
+        least = most = scene.positions[0];
+    for (const glm::vec3& position : scene.positions) {
+        least = glm::min(least, position);
+        most = glm::max(most, position);
     }
+    const glm::dvec3 low(least), high(most);
     facets.centre = glm::dvec3(glm::vec3(0.5 * (low + high)));
     const double diagonal = glm::length(high - low);
     facets.scale = diagonal > 0 ? 1 / diagonal : 1;
@@ -286,6 +315,7 @@ Facets make_facets(const PatchScene& scene) {
     for (std::uint32_t p = 0; p < facets.patch_count; ++p)
         builder.add_patch(p);
     builder.store_groups();
+    builder.store_boxes();
     facets.patch_first_facet.push_back(std::uint32_t(facets.facets.size()));
     measure(scene, facets);
     return facets;

@@ -55,6 +55,10 @@ struct PolygonGroup {
     std::size_t bytes() const;
 };
 
+struct Box {
+    glm::vec3 low{0.f}, high{0.f};
+};
+
 struct Facets {
     double scale = 1; ///< scaled = (metres - centre) * scale
     glm::dvec3 centre{0.0};
@@ -66,6 +70,7 @@ struct Facets {
     std::uint32_t patch_count = 0;
     float mean_leaf_area = 0;      ///< of leaf patches with an area (of all patches if there is no leaf)
     glm::vec3 low{0.f}, high{0.f}; ///< bounds, scaled
+    std::vector<Box> boxes;        ///< closer bounds: together they hold all polygons; scaled
 
     /// What a line meets is a face: leaf facet f is face f; bark facet b (counted from leaf_facet_count) has two,
     /// leaf_facet_count + 2b where its front looks to the near end of the line, + 1 where it looks to the far end.

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <span>
 #include <utility>
 
@@ -221,17 +222,35 @@ Projection fit_projection(const Facets& facets, const glm::vec3& direction, floa
     projection.v_axis = -glm::vec3(b, sign + direction.y * direction.y * a, -direction.y);
     projection.pixels_per_unit = pixels_per_unit;
 
-    // The box's extent along an axis is the sum of its half sizes' shares.
-    const glm::vec3 centre = 0.5f * (facets.low + facets.high), half = 0.5f * (facets.high - facets.low);
-    auto range = [&](const glm::vec3& axis) {
-        const float middle = glm::dot(centre, axis), reach = glm::dot(half, glm::abs(axis));
+    // A box's extent along an axis is the sum of its half sizes' shares.
+    auto range = [&](const Box& box, const glm::vec3& axis) {
+        const float middle = glm::dot(0.5f * (box.low + box.high), axis),
+                    reach = glm::dot(0.5f * (box.high - box.low), glm::abs(axis));
         return glm::vec2(middle - reach, middle + reach) * pixels_per_unit;
     };
-    const glm::vec2 u = range(projection.u_axis), v = range(projection.v_axis), w = range(direction);
-    projection.offset = glm::vec2(1 - u.x, 1 - v.x) + jitter;
+    // The scene's box says where the grid lies, so that it doesn't depend on how the polygons are held by boxes; those
+    // say which part of it is needed. The part begins at a whole number of kStep pixels.
+    const Box whole{facets.low, facets.high};
+    auto place = [&](const glm::vec3& axis, float shift, float& offset, int& size) {
+        constexpr float kStep = 4; // what follows every 2nd or 4th pixel follows the same ones
+        const float origin = 1 - range(whole, axis).x + shift;
+        float low = std::numeric_limits<float>::max(), high = -low;
+        for (const Box& box : facets.boxes) {
+            const glm::vec2 extent = range(box, axis) + origin;
+            low = std::min(low, extent.x);
+            high = std::max(high, extent.y);
+        }
+        if (facets.boxes.empty())
+            low = high = 1;
+        const float first = kStep * std::floor((low - 1) / kStep);
+        offset = origin - first;
+        size = int(std::ceil(high - first)) + 2;
+    };
+    place(projection.u_axis, jitter.x, projection.offset.x, projection.width);
+    place(projection.v_axis, jitter.y, projection.offset.y, projection.height);
     constexpr int group = FragmentLists::kGroup;
-    projection.width = (int(std::ceil(u.y - u.x)) + 3 + group - 1) / group * group;
-    projection.height = int(std::ceil(v.y - v.x)) + 3;
+    projection.width = (projection.width + group - 1) / group * group;
+    const glm::vec2 w = range(whole, direction);
     const float margin = 2 + 1e-2f * (w.y - w.x);
     projection.depth_low = w.x - margin;
     projection.depth_high = w.y + margin;
