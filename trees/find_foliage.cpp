@@ -80,12 +80,10 @@ Verdict judge_material(const GltfMaterial& material) {
 
 /// The last resort, mesh by mesh: green meshes are foliage, others bark. A mesh that is both is cut in two, unless
 /// foliage was found in some better way.
-Verdict judge_by_color(GltfScene& scene, int material, bool decided, std::vector<TreePartKind>& kinds) {
+Verdict judge_by_color(GltfScene& scene, const std::vector<std::size_t>& meshes, int material, bool decided,
+                       std::vector<TreePartKind>& kinds) {
     std::size_t foliage = 0, bark = 0, cut = 0;
-    const std::size_t meshes = scene.meshes.size();
-    for (std::size_t m = 0; m < meshes; ++m) {
-        if (scene.meshes[m].material != material)
-            continue;
+    for (const std::size_t m : meshes) {
         const std::vector<bool> green = green_triangles(scene.meshes[m], scene.materials[std::size_t(material)]);
         const double share = green_share(scene.meshes[m], green);
         if (!decided && share > 0.05 && share < 0.95) {
@@ -119,8 +117,13 @@ FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& name
         return judge_by_user(scene, named, path);
     FoundFoliage found;
     std::map<int, Verdict> verdicts;
-    for (const GltfMesh& mesh : scene.meshes)
-        verdicts.try_emplace(mesh.material, judge_material(scene.materials[std::size_t(mesh.material)]));
+    std::map<int, std::vector<std::size_t>> meshes_of; // by material
+    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
+        const int material = scene.meshes[m].material;
+        if (verdicts.try_emplace(material).second)
+            verdicts[material] = judge_material(scene.materials[std::size_t(material)]);
+        meshes_of[material].push_back(m);
+    }
     const auto any_foliage = [&] {
         return std::any_of(verdicts.begin(), verdicts.end(), [](const auto& entry) {
             return entry.second.kind == TreePartKind::foliage && !entry.second.rule.empty();
@@ -131,11 +134,11 @@ FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& name
         if (!verdict.rule.empty())
             continue;
         bool foliage = false, wood = false;
-        for (const GltfMesh& mesh : scene.meshes)
-            if (mesh.material == index) {
-                foliage = foliage || names_foliage(mesh.name) || names_foliage(mesh.mesh_name);
-                wood = wood || names_wood(mesh.name) || names_wood(mesh.mesh_name);
-            }
+        for (const std::size_t m : meshes_of.at(index)) {
+            const GltfMesh& mesh = scene.meshes[m];
+            foliage = foliage || names_foliage(mesh.name) || names_foliage(mesh.mesh_name);
+            wood = wood || names_wood(mesh.name) || names_wood(mesh.mesh_name);
+        }
         if (foliage != wood)
             verdict = {foliage ? TreePartKind::foliage : TreePartKind::bark, "the name of its mesh"};
     }
@@ -144,7 +147,7 @@ FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& name
     const bool decided = any_foliage();
     for (auto& [index, verdict] : verdicts) {
         if (verdict.rule.empty())
-            verdict = judge_by_color(scene, index, decided, found.kinds);
+            verdict = judge_by_color(scene, meshes_of.at(index), index, decided, found.kinds);
         found.notes.push_back("material " + display_name(scene.materials[std::size_t(index)], index) + " is " +
                               (verdict.kind == TreePartKind::foliage ? "foliage" : "bark") + ": " + verdict.rule);
     }

@@ -19,7 +19,7 @@ bool is_glb(std::span<const unsigned char> bytes);
 /// recursive readers.
 nlohmann::json parse_gltf_json(std::span<const unsigned char> bytes, const std::string& path);
 
-/// The most elements of an accessor, and the most vertices and the most corners of triangles of a scene.
+/// The most elements of an accessor.
 inline constexpr std::size_t kMaximumElements = std::size_t(1) << 27;
 
 /// The most places of meshes in a scene, instances counted singly; and of meshes that come out of it.

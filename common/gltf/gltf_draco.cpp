@@ -1,6 +1,7 @@
 #include "common/gltf/gltf_draco.h"
 
 #include "common/gltf/check_gltf.h"
+#include "common/scene/mesh_scene.h"
 #include "common/services/error.h"
 
 #include <cstdint>
@@ -120,7 +121,7 @@ class PrimitiveDecoder {
             fail(place, "is not within its buffer");
         const std::span<const unsigned char> bytes = std::span(data).subspan(view.byteOffset, view.byteLength);
         const Announced counts = announced(bytes, place);
-        const std::uint64_t most = std::min(kMostFacesAByte * bytes.size(), std::uint64_t(kMaximumElements) / 3);
+        const std::uint64_t most = std::min(kMostFacesAByte * bytes.size(), std::uint64_t(kMaximumSceneTriangles));
         if (counts.faces > most || counts.points > 3 * std::uint64_t(counts.faces))
             fail(place, "announces " + std::to_string(counts.faces) + " faces and " + std::to_string(counts.points) +
                             " vertices, more than its " + std::to_string(bytes.size()) + " bytes can hold" + kAdvice);

@@ -160,9 +160,9 @@ class Flattening {
         const std::size_t instances = placed.transforms.size();
         vertices_ += placed.raw->positions.size() * instances;
         triangles_ += placed.raw->triangles.size() * instances;
-        if (vertices_ > kMaximumElements || triangles_ > kMaximumElements / 3)
-            document_.fail("its scene has more than the limit of " + std::to_string(kMaximumElements) +
-                           " vertices or " + std::to_string(kMaximumElements / 3) + " triangles");
+        if (vertices_ > kMaximumSceneVertices || triangles_ > kMaximumSceneTriangles)
+            document_.fail("its scene has more than the limit of " + std::to_string(kMaximumSceneVertices) +
+                           " vertices, or as many triangles");
         if (placed_.size() >= kMaximumMeshes)
             document_.fail("its scene has more than the limit of " + std::to_string(kMaximumMeshes) + " meshes");
         for (const glm::dmat4& transform : placed.transforms)

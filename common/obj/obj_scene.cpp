@@ -20,7 +20,6 @@ namespace {
 constexpr std::uint64_t kMaximumFile = 0xffffffffu;
 constexpr std::size_t kMaximumLine = std::size_t(1) << 16;
 constexpr int kMaximumCorners = 1024;
-constexpr std::size_t kMaximumElements = std::size_t(1) << 27;
 constexpr std::size_t kMaximumMeshes = std::size_t(1) << 16;
 
 /// A stream over bytes that lie elsewhere.
@@ -119,8 +118,8 @@ class ObjReader {
         if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z) ||
             glm::any(glm::greaterThan(glm::abs(position), glm::vec3(1e30f))))
             fail("vertex " + std::to_string(positions_.size() + 1) + " is not finite");
-        if (positions_.size() >= kMaximumElements)
-            fail("more than the limit of " + std::to_string(kMaximumElements) + " vertices");
+        if (positions_.size() >= kMaximumSceneVertices)
+            fail("more than the limit of " + std::to_string(kMaximumSceneVertices) + " vertices");
         positions_.push_back(position);
     }
 
@@ -189,8 +188,8 @@ class ObjReader {
         for (const glm::uvec3& t : triangulate_polygon(places))
             mesh.triangles.emplace_back(vertices[t.x], vertices[t.y], vertices[t.z]);
         triangles_ += std::size_t(count) - 2;
-        if (triangles_ > kMaximumElements / 3)
-            fail("more than the limit of " + std::to_string(kMaximumElements / 3) + " triangles");
+        if (triangles_ > kMaximumSceneTriangles)
+            fail("more than the limit of " + std::to_string(kMaximumSceneTriangles) + " triangles");
     }
 
     MeshScene finish() {

@@ -19,7 +19,7 @@ namespace kokage {
 ///
 /// Not read: vertex colours, free-form surfaces, lines and points. Throws InputError with one line that begins with the
 /// path: indices out of range, numbers that are not finite, sizes beyond the limits (lines of 64 KiB, polygons of 1024
-/// corners, 2^27 vertices).
+/// corners, kMaximumSceneVertices).
 MeshScene read_obj_scene(const std::filesystem::path& path, Progress& progress = silent_progress());
 
 } // namespace kokage
