@@ -29,18 +29,18 @@ constexpr std::array kFoliageWords = {"leaf",  "leav",   "foliage", "needle", "b
 constexpr std::array kWoodWords = {"bark", "wood", "trunk", "branch", "stem", "twig", "root", "log", "stump", "brown"};
 constexpr std::array kColorWords = {"green", "autumn", "fall"};
 
-std::string display_name(const GltfMaterial& material, int index) {
+std::string display_name(const SceneMaterial& material, int index) {
     return material.name.empty() ? "material " + std::to_string(index) : "'" + material.name + "'";
 }
 
-FoundFoliage judge_by_user(const GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
+FoundFoliage judge_by_user(const MeshScene& scene, const std::vector<std::string>& named, const std::string& path) {
     FoundFoliage found;
     found.kinds.assign(scene.meshes.size(), TreePartKind::bark);
     for (const std::string& name : named) {
         const std::string wanted = lower_case(name);
         bool fits = false;
         for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-            const GltfMesh& mesh = scene.meshes[m];
+            const SceneMesh& mesh = scene.meshes[m];
             if (lower_case(scene.materials[std::size_t(mesh.material)].name) == wanted ||
                 lower_case(mesh.name) == wanted || lower_case(mesh.mesh_name) == wanted) {
                 found.kinds[m] = TreePartKind::foliage;
@@ -65,10 +65,10 @@ struct Verdict {
     std::string rule;
 };
 
-Verdict judge_material(const GltfMaterial& material) {
+Verdict judge_material(const SceneMaterial& material) {
     const bool wood = names_wood(material.name) && !names_foliage(material.name);
-    if (material.alpha_mode != GltfAlphaMode::opaque && !wood)
-        return {TreePartKind::foliage, material.alpha_mode == GltfAlphaMode::mask ? "alpha mask" : "alpha blend"};
+    if (material.alpha_mode != AlphaMode::opaque && !wood)
+        return {TreePartKind::foliage, material.alpha_mode == AlphaMode::mask ? "alpha mask" : "alpha blend"};
     if ((material.diffuse_transmission.value_or(0.f) > 0 || material.transmission > 0) && !wood)
         return {TreePartKind::foliage, "it transmits light"};
     if (names_foliage(material.name))
@@ -80,7 +80,7 @@ Verdict judge_material(const GltfMaterial& material) {
 
 /// The last resort, mesh by mesh: green meshes are foliage, others bark. A mesh that is both is cut in two, unless
 /// foliage was found in some better way.
-Verdict judge_by_color(GltfScene& scene, const std::vector<std::size_t>& meshes, int material, bool decided,
+Verdict judge_by_color(MeshScene& scene, const std::vector<std::size_t>& meshes, int material, bool decided,
                        std::vector<TreePartKind>& kinds) {
     std::size_t foliage = 0, bark = 0, cut = 0;
     for (const std::size_t m : meshes) {
@@ -112,7 +112,7 @@ bool names_foliage(const std::string& name) {
     return holds_any(name, kFoliageWords) || (holds_any(name, kColorWords) && !names_wood(name));
 }
 
-FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& named, const std::string& path) {
+FoundFoliage find_foliage(MeshScene& scene, const std::vector<std::string>& named, const std::string& path) {
     if (!named.empty())
         return judge_by_user(scene, named, path);
     FoundFoliage found;
@@ -135,14 +135,14 @@ FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& name
             continue;
         bool foliage = false, wood = false;
         for (const std::size_t m : meshes_of.at(index)) {
-            const GltfMesh& mesh = scene.meshes[m];
+            const SceneMesh& mesh = scene.meshes[m];
             foliage = foliage || names_foliage(mesh.name) || names_foliage(mesh.mesh_name);
             wood = wood || names_wood(mesh.name) || names_wood(mesh.mesh_name);
         }
         if (foliage != wood)
             verdict = {foliage ? TreePartKind::foliage : TreePartKind::bark, "the name of its mesh"};
     }
-    for (const GltfMesh& mesh : scene.meshes)
+    for (const SceneMesh& mesh : scene.meshes)
         found.kinds.push_back(verdicts.at(mesh.material).kind);
     const bool decided = any_foliage();
     for (auto& [index, verdict] : verdicts) {

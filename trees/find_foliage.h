@@ -13,7 +13,7 @@ struct FoundFoliage {
 /// By alpha, transmission, names of materials, then of meshes, then colour; a mesh that holds green leaves and bark in
 /// one material is cut in two (a mesh is added to the scene). `named`: the user's choice, may be empty. Throws
 /// InputError (the file's names listed) if a name fits nothing.
-FoundFoliage find_foliage(GltfScene& scene, const std::vector<std::string>& named, const std::string& path);
+FoundFoliage find_foliage(MeshScene& scene, const std::vector<std::string>& named, const std::string& path);
 
 /// True if a name speaks of leaves ("leaves", "Needles_02", "DarkGreen"), or of wood ("bark", "Trunk", "woodBirch").
 bool names_foliage(const std::string& name);

@@ -36,7 +36,7 @@ struct Pieces {
     std::vector<Piece> pieces;
 };
 
-Pieces pieces_of(const GltfMesh& mesh) {
+Pieces pieces_of(const SceneMesh& mesh) {
     Pieces result;
     result.welded = weld(mesh.positions);
     result.of_triangle = connected_components(triangle_neighbours(mesh.triangles, result.welded));
@@ -61,12 +61,12 @@ Pieces pieces_of(const GltfMesh& mesh) {
 
 /// Nine in ten of the flat pieces are no larger, if there are enough. Only those count that show a leaf by their
 /// outline: a texture with alpha may hold a whole bough.
-float usual_radius(std::span<const GltfMesh> meshes, const std::vector<Pieces>& pieces,
-                   std::span<const GltfMaterial> materials) {
+float usual_radius(std::span<const SceneMesh> meshes, const std::vector<Pieces>& pieces,
+                   std::span<const SceneMaterial> materials) {
     std::vector<float> radii;
     for (std::size_t m = 0; m < meshes.size(); ++m) {
-        const GltfMaterial& material = materials[std::size_t(meshes[m].material)];
-        if (material.alpha_mode != GltfAlphaMode::opaque && material.base_color_texture &&
+        const SceneMaterial& material = materials[std::size_t(meshes[m].material)];
+        if (material.alpha_mode != AlphaMode::opaque && material.base_color_texture &&
             material.base_color_texture->alpha)
             continue;
         for (const Piece& piece : pieces[m].pieces)
@@ -87,7 +87,7 @@ struct Stalk {
     float width = 0;
 };
 
-std::optional<Stalk> as_stalk(const GltfMesh& mesh, const Pieces& pieces, std::uint32_t first, std::uint32_t second) {
+std::optional<Stalk> as_stalk(const SceneMesh& mesh, const Pieces& pieces, std::uint32_t first, std::uint32_t second) {
     struct Side {
         std::uint32_t a, b;
         float length;
@@ -119,7 +119,7 @@ std::optional<Stalk> as_stalk(const GltfMesh& mesh, const Pieces& pieces, std::u
 
 /// Pieces that are small enough, and nowhere turn by more than the limit from what they look like as a whole, are one
 /// patch: where growing a patch begins must not decide whether it is cut.
-void keep_whole(const GltfMesh& mesh, const Pieces& pieces, const SurfacePatchLimits& limits, float largest_radius,
+void keep_whole(const SceneMesh& mesh, const Pieces& pieces, const SurfacePatchLimits& limits, float largest_radius,
                 std::vector<std::uint32_t>& patch) {
     std::vector<bool> whole(pieces.pieces.size());
     for (std::size_t p = 0; p < whole.size(); ++p)
@@ -141,7 +141,7 @@ void keep_whole(const GltfMesh& mesh, const Pieces& pieces, const SurfacePatchLi
 }
 
 /// Gives stalks the patch of their blades. Returns how many.
-std::size_t join_stalks(const GltfMesh& mesh, const Pieces& pieces, std::vector<std::uint32_t>& patch) {
+std::size_t join_stalks(const SceneMesh& mesh, const Pieces& pieces, std::vector<std::uint32_t>& patch) {
     std::vector<std::array<std::uint32_t, 2>> of_card(pieces.pieces.size(), {~0u, ~0u});
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t)
         if (const std::uint32_t p = pieces.of_triangle[t]; pieces.pieces[p].triangles == 2)
@@ -199,11 +199,11 @@ std::uint32_t renumber(std::vector<std::uint32_t>& patch, std::uint32_t first) {
 
 } // namespace
 
-FoundLeaves find_leaves(std::span<const GltfMesh> foliage, std::span<const GltfMaterial> materials, float leaf_size,
+FoundLeaves find_leaves(std::span<const SceneMesh> foliage, std::span<const SceneMaterial> materials, float leaf_size,
                         float crown_radius_m, Progress& progress) {
     progress.begin("finding leaves", 2 * foliage.size());
     std::vector<Pieces> pieces;
-    for (const GltfMesh& mesh : foliage) {
+    for (const SceneMesh& mesh : foliage) {
         progress.throw_if_stopped();
         pieces.push_back(pieces_of(mesh));
         progress.advance(1);

@@ -20,7 +20,7 @@ struct FoundLeaves {
 /// crown's radius, or as large as nine in ten of the flat pieces without alpha are, up to 15 %: so the leaves of a
 /// small tree stay whole); a card of one or two triangles is never cut. Slender cards that end at a corner of other
 /// foliage are its stalk, and of the same leaf.
-FoundLeaves find_leaves(std::span<const GltfMesh> foliage, std::span<const GltfMaterial> materials, float leaf_size,
+FoundLeaves find_leaves(std::span<const SceneMesh> foliage, std::span<const SceneMaterial> materials, float leaf_size,
                         float crown_radius_m, Progress& progress);
 
 } // namespace kokage

@@ -34,7 +34,7 @@ double area_of(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
 
 /// Drops triangles whose corners coincide, and of two triangles with the same corners in opposite directions (a sheet
 /// drawn twice for viewers that cull back faces) the second: leaves are two-sided here.
-void drop_degenerate_and_back_faces(GltfMesh& mesh, bool drop_back_faces, std::size_t& back_faces) {
+void drop_degenerate_and_back_faces(SceneMesh& mesh, bool drop_back_faces, std::size_t& back_faces) {
     const std::vector<std::uint32_t> welded = weld(mesh.positions);
     std::set<std::array<std::uint32_t, 3>> seen;
     std::vector<glm::uvec3> kept;
@@ -58,7 +58,7 @@ void drop_degenerate_and_back_faces(GltfMesh& mesh, bool drop_back_faces, std::s
     mesh.triangles = std::move(kept);
 }
 
-glm::vec3 mean_vertex_color(const GltfMesh& mesh) {
+glm::vec3 mean_vertex_color(const SceneMesh& mesh) {
     glm::dvec3 sum(0.0);
     double weight = 0;
     for (const glm::uvec3& t : mesh.triangles) {
@@ -75,7 +75,7 @@ class PartBuilder {
   public:
     TreePart part;
 
-    void append(const GltfMesh& mesh, const std::vector<std::uint32_t>& patch, std::uint32_t first_patch) {
+    void append(const SceneMesh& mesh, const std::vector<std::uint32_t>& patch, std::uint32_t first_patch) {
         std::vector<std::uint32_t> order(mesh.triangles.size());
         std::iota(order.begin(), order.end(), 0u);
         std::stable_sort(order.begin(), order.end(),
@@ -134,7 +134,7 @@ std::vector<Leaf> leaf_centres(const Tree& tree, std::uint32_t count) {
 
 /// Bark patches: about as long as the wood is thick around, and turning by at most 45 degrees, except on twigs, which a
 /// ring fits.
-void cut_bark(Tree& tree, std::vector<GltfMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
+void cut_bark(Tree& tree, std::vector<SceneMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
               std::vector<PartBuilder>& parts, float crown) {
     const NearestAxis nearest_axis(tree.skeleton);
     SurfacePatchLimits limits;
@@ -146,7 +146,7 @@ void cut_bark(Tree& tree, std::vector<GltfMesh>& bark, const std::map<std::pair<
         const float around = 2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown);
         return std::max(0.5f * around / std::sqrt(kPi), 0.005f * crown);
     };
-    for (GltfMesh& mesh : bark) {
+    for (SceneMesh& mesh : bark) {
         const std::vector<std::uint32_t> patch = surface_patches(mesh.positions, mesh.triangles, limits);
         const std::size_t index = part_of.at({mesh.material, 1});
         parts[index].append(mesh, patch, tree.bark_patch_count);
@@ -156,7 +156,8 @@ void cut_bark(Tree& tree, std::vector<GltfMesh>& bark, const std::map<std::pair<
 
 } // namespace
 
-TreeMaterial tree_material(const GltfMaterial& source, const glm::vec3& color_factor, std::vector<std::string>& notes) {
+TreeMaterial tree_material(const SceneMaterial& source, const glm::vec3& color_factor,
+                           std::vector<std::string>& notes) {
     TreeMaterial material;
     material.name = source.name;
     material.base_color = glm::vec3(source.base_color) * color_factor;
@@ -166,8 +167,8 @@ TreeMaterial tree_material(const GltfMaterial& source, const glm::vec3& color_fa
         material.diffuse_transmission = *source.diffuse_transmission;
         material.diffuse_transmission_color = source.diffuse_transmission_color;
     }
-    const bool cut = source.alpha_mode != GltfAlphaMode::opaque;
-    material.alpha_cutoff = source.alpha_mode == GltfAlphaMode::mask ? source.alpha_cutoff : 0.5f;
+    const bool cut = source.alpha_mode != AlphaMode::opaque;
+    material.alpha_cutoff = source.alpha_mode == AlphaMode::mask ? source.alpha_cutoff : 0.5f;
     if (source.base_color_texture) {
         material.base_color_texture = source.base_color_texture->color;
         material.wrap_u = source.base_color_texture->wrap_u;
@@ -178,9 +179,9 @@ TreeMaterial tree_material(const GltfMaterial& source, const glm::vec3& color_fa
     if (material.alpha_texture && source.base_color.a < 1 && source.base_color.a > 0)
         material.alpha_cutoff /= source.base_color.a;
     const std::string name = "material '" + source.name + "'";
-    if (source.alpha_mode == GltfAlphaMode::mask && !material.alpha_texture)
+    if (source.alpha_mode == AlphaMode::mask && !material.alpha_texture)
         notes.push_back(name + " has an alpha mask, but no texture with alpha: it is solid");
-    if (source.alpha_mode == GltfAlphaMode::blend)
+    if (source.alpha_mode == AlphaMode::blend)
         notes.push_back(name + (material.alpha_texture ? " is blended: its alpha is taken as a mask at 0.5"
                                                        : " is blended, but has no texture with alpha: it is solid"));
     return material;
@@ -190,14 +191,14 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
     return tree_from_scene(flatten(document, std::nullopt, progress), document.path(), options, progress);
 }
 
-Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions& options, Progress& progress) {
+Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions& options, Progress& progress) {
     Tree tree;
     tree.name = std::filesystem::path(path).stem().string();
     tree.source = path;
     tree.origin = scene.origin * options.scale;
     tree.notes = scene.notes;
     if (options.scale != 1)
-        for (GltfMesh& mesh : scene.meshes)
+        for (SceneMesh& mesh : scene.meshes)
             for (glm::vec3& position : mesh.positions)
                 position = glm::vec3(glm::dvec3(position) * options.scale);
 
@@ -209,12 +210,12 @@ Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions
     // A part for each material and kind; vertex colours make a material of their own, as a mean.
     std::map<std::pair<int, int>, std::size_t> part_of; // (material, kind)
     std::vector<PartBuilder> parts;
-    std::vector<GltfMesh> foliage, bark;
+    std::vector<SceneMesh> foliage, bark;
     std::size_t back_faces = 0;
     const std::size_t file_materials = scene.materials.size();
     std::vector<glm::vec3> color_factors(file_materials, glm::vec3(1.f));
     for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        GltfMesh& mesh = scene.meshes[m];
+        SceneMesh& mesh = scene.meshes[m];
         const bool is_leaf = found.kinds[m] == TreePartKind::foliage;
         drop_degenerate_and_back_faces(mesh, is_leaf, back_faces);
         if (mesh.triangles.empty())
@@ -247,8 +248,8 @@ Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions
     };
 
     // Leaves.
-    for (const std::vector<GltfMesh>* meshes : {&foliage, &bark}) // for the crown's radius
-        for (const GltfMesh& mesh : *meshes) {
+    for (const std::vector<SceneMesh>* meshes : {&foliage, &bark}) // for the crown's radius
+        for (const SceneMesh& mesh : *meshes) {
             tree.parts.emplace_back();
             tree.parts.back().kind = meshes == &foliage ? TreePartKind::foliage : TreePartKind::bark;
             tree.parts.back().positions = mesh.positions;
@@ -273,7 +274,7 @@ Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions
     for (PartBuilder& builder : parts)
         tree.parts.push_back(builder.part);
     tree.leaves = leaf_centres(tree, leaf_count);
-    for (const GltfMesh& mesh : bark) {
+    for (const SceneMesh& mesh : bark) {
         part_index(mesh.material, TreePartKind::bark);
         TreePart whole;
         whole.positions = mesh.positions;

@@ -8,11 +8,11 @@ namespace kokage {
 Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options, Progress& progress);
 
 /// The same from meshes and materials that were read already; `path` is named in messages.
-Tree tree_from_scene(GltfScene scene, const std::string& path, const ReadOptions& options, Progress& progress);
+Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions& options, Progress& progress);
 
 /// The tree's material for a glTF material; `color_factor` multiplies its base colour (mean vertex colour).
 /// Notes what could not be kept.
-TreeMaterial tree_material(const GltfMaterial& material, const glm::vec3& color_factor,
+TreeMaterial tree_material(const SceneMaterial& material, const glm::vec3& color_factor,
                            std::vector<std::string>& notes);
 
 } // namespace kokage

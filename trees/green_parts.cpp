@@ -8,7 +8,7 @@
 namespace kokage {
 namespace {
 
-double area_of(const GltfMesh& mesh, const glm::uvec3& t) {
+double area_of(const SceneMesh& mesh, const glm::uvec3& t) {
     const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
     return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
@@ -24,7 +24,7 @@ glm::vec3 texel(const Image& image, const glm::vec2& uv) {
     return {pixel[0], pixel[1], pixel[2]};
 }
 
-glm::vec3 color_of(const GltfMesh& mesh, const GltfMaterial& material, const glm::uvec3& t) {
+glm::vec3 color_of(const SceneMesh& mesh, const SceneMaterial& material, const glm::uvec3& t) {
     glm::vec3 color(material.base_color);
     if (material.base_color_texture && !mesh.uvs.empty())
         color *= texel(*material.base_color_texture->color, (mesh.uvs[t.x] + mesh.uvs[t.y] + mesh.uvs[t.z]) / 3.f);
@@ -39,7 +39,7 @@ bool is_green(const glm::vec3& color) {
     return color.g > 1.05f * color.r && color.g > 1.05f * color.b;
 }
 
-std::vector<bool> green_triangles(const GltfMesh& mesh, const GltfMaterial& material) {
+std::vector<bool> green_triangles(const SceneMesh& mesh, const SceneMaterial& material) {
     std::vector<bool> green(mesh.triangles.size());
     for (std::size_t t = 0; t < green.size(); ++t)
         green[t] = is_green(color_of(mesh, material, mesh.triangles[t]));
@@ -56,7 +56,7 @@ std::vector<bool> green_triangles(const GltfMesh& mesh, const GltfMaterial& mate
     return green;
 }
 
-double green_share(const GltfMesh& mesh, const std::vector<bool>& green) {
+double green_share(const SceneMesh& mesh, const std::vector<bool>& green) {
     double sum = 0, all = 0;
     for (std::size_t t = 0; t < green.size(); ++t) {
         const double area = area_of(mesh, mesh.triangles[t]);
@@ -66,8 +66,8 @@ double green_share(const GltfMesh& mesh, const std::vector<bool>& green) {
     return all > 0 ? sum / all : 0;
 }
 
-GltfMesh take_green(GltfMesh& mesh, const std::vector<bool>& green) {
-    GltfMesh taken = mesh;
+SceneMesh take_green(SceneMesh& mesh, const std::vector<bool>& green) {
+    SceneMesh taken = mesh;
     taken.triangles.clear();
     std::vector<glm::uvec3> kept;
     for (std::size_t t = 0; t < green.size(); ++t)

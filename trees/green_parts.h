@@ -10,12 +10,12 @@ bool is_green(const glm::vec3& color);
 
 /// For each triangle of a mesh, whether it is green: base colour times texture times vertex colours at its middle.
 /// Where the mesh has several connected pieces, each piece is judged as a whole, by area.
-std::vector<bool> green_triangles(const GltfMesh& mesh, const GltfMaterial& material);
+std::vector<bool> green_triangles(const SceneMesh& mesh, const SceneMaterial& material);
 
 /// Share of the mesh's area that is green, 0..1.
-double green_share(const GltfMesh& mesh, const std::vector<bool>& green);
+double green_share(const SceneMesh& mesh, const std::vector<bool>& green);
 
 /// Takes the green triangles out of `mesh` into a mesh of their own; both keep all vertices.
-GltfMesh take_green(GltfMesh& mesh, const std::vector<bool>& green);
+SceneMesh take_green(SceneMesh& mesh, const std::vector<bool>& green);
 
 } // namespace kokage

@@ -252,7 +252,7 @@ bool unpack(const Arrays& a, OwnTree& own) {
 }
 
 /// The part that a primitive holds, vertices that were repeated for patches put together again.
-bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const GltfScene& scene, OwnTree& own) {
+bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const MeshScene& scene, OwnTree& own) {
     const std::string kind = reader.text(entry, "kind");
     const nlohmann::json& mesh = reader.member(entry, "mesh");
     const nlohmann::json& primitive = reader.member(entry, "primitive");
@@ -269,7 +269,7 @@ bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const GltfScen
     place.primitive = primitive.get<int>();
     std::map<std::string, int> attributes;
     if (place.mesh >= 0) {
-        const auto found = std::find_if(scene.meshes.begin(), scene.meshes.end(), [&](const GltfMesh& candidate) {
+        const auto found = std::find_if(scene.meshes.begin(), scene.meshes.end(), [&](const SceneMesh& candidate) {
             return candidate.mesh_index == place.mesh && candidate.primitive_index == place.primitive;
         });
         if (found == scene.meshes.end() || found->positions.size() != vertices + duplicates ||
@@ -302,7 +302,7 @@ bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const GltfScen
     return reader.good;
 }
 
-bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const GltfScene& scene, Tree& tree) {
+bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const MeshScene& scene, Tree& tree) {
     const nlohmann::json& materials = reader.list(extras, "materials");
     if (!reader.good || materials.size() >= scene.materials.size() + 1)
         return false;
@@ -429,7 +429,7 @@ std::optional<OwnTree> read_own_tree(const GltfDocument& document, std::string& 
     const bool has_mesh = std::any_of(parts.begin(), parts.end(), [](const nlohmann::json& part) {
         return part.is_object() && part.value("mesh", nlohmann::json(-1)) != nlohmann::json(-1);
     });
-    GltfScene scene;
+    MeshScene scene;
     if (has_mesh)
         scene = flatten(document, own.tree.origin, progress);
     else

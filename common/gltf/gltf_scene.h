@@ -5,12 +5,6 @@
 
 namespace kokage {
 
-using GltfTexture = SceneTexture;
-using GltfAlphaMode = AlphaMode;
-using GltfMaterial = SceneMaterial;
-using GltfMesh = SceneMesh;
-using GltfScene = MeshScene;
-
 /// Flattens the default scene (else the first with meshes, else all root nodes): morph targets with their default
 /// weights, skins in the pose that the nodes have, instances (EXT_mesh_gpu_instancing). Transforms are multiplied in
 /// double precision. `origin`: taken as it is where given; else 0 unless the scene lies farther from it than 16 times

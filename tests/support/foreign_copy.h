@@ -21,8 +21,8 @@ inline std::vector<std::uint32_t> shuffled(std::size_t count, Random& random) {
     return order;
 }
 
-inline GltfMaterial plain_material(const TreeMaterial& material) {
-    GltfMaterial plain;
+inline SceneMaterial plain_material(const TreeMaterial& material) {
+    SceneMaterial plain;
     plain.name = material.name;
     plain.base_color = glm::vec4(material.base_color, 1.f);
     plain.double_sided = material.double_sided;
@@ -32,7 +32,7 @@ inline GltfMaterial plain_material(const TreeMaterial& material) {
         plain.diffuse_transmission_color = material.diffuse_transmission_color;
     }
     if (material.base_color_texture || material.alpha_texture) {
-        GltfTexture texture;
+        SceneTexture texture;
         texture.color = material.base_color_texture;
         texture.alpha = material.alpha_texture;
         texture.wrap_u = material.wrap_u;
@@ -40,7 +40,7 @@ inline GltfMaterial plain_material(const TreeMaterial& material) {
         plain.base_color_texture = texture;
     }
     if (material.alpha_texture) {
-        plain.alpha_mode = GltfAlphaMode::mask;
+        plain.alpha_mode = AlphaMode::mask;
         plain.alpha_cutoff = material.alpha_cutoff;
     }
     return plain;
@@ -49,9 +49,9 @@ inline GltfMaterial plain_material(const TreeMaterial& material) {
 /// No skeleton, no leaf or patch numbers; in each part all vertices at one place are one (where leaves need their
 /// texture coordinates: at one place with the same ones), triangles and vertices stand in random order, and every
 /// triangle begins at a random corner.
-inline GltfScene foreign_copy(const Tree& tree, std::uint64_t seed) {
+inline MeshScene foreign_copy(const Tree& tree, std::uint64_t seed) {
     Random random(seed);
-    GltfScene scene;
+    MeshScene scene;
     scene.origin = tree.origin;
     for (const TreeMaterial& material : tree.materials)
         scene.materials.push_back(plain_material(material));
@@ -62,7 +62,7 @@ inline GltfScene foreign_copy(const Tree& tree, std::uint64_t seed) {
             for (std::uint32_t v = 0; v < welded.size(); ++v)
                 welded[v] = first.try_emplace({float(welded[v]), part.uvs[v].x, part.uvs[v].y}, v).first->second;
         }
-        GltfMesh mesh;
+        SceneMesh mesh;
         mesh.material = int(part.material);
         mesh.mesh_index = int(scene.meshes.size());
         std::vector<std::uint32_t> place(part.positions.size(), ~0u);

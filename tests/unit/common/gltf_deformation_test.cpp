@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-GltfScene load(const GltfText& file) {
+MeshScene load(const GltfText& file) {
     TemporaryFolder folder;
     file.write(folder / "scene.gltf");
     return flatten(GltfDocument::read(folder / "scene.gltf"));
@@ -60,7 +60,7 @@ GltfText skinned() {
 }
 
 TEST(GltfDeformation, SkinsFollowTheirJoints) {
-    const GltfScene scene = load(skinned());
+    const MeshScene scene = load(skinned());
     const auto& positions = scene.meshes[0].positions;
     expect_near(positions[0], {0, 0, 0});
     expect_near(positions[1], {0, 3, 0}); // (1,0,0) - (1,0,0), turned, raised
@@ -83,9 +83,9 @@ TEST(GltfDeformation, InstancesMirrorAndScaleOneByOne) {
                {"translation", {0, 10, 0}},
                {"extensions", {{"EXT_mesh_gpu_instancing", {{"attributes", attributes}}}}}});
     file.scene({0});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 1u);
-    const GltfMesh& mesh = scene.meshes[0];
+    const SceneMesh& mesh = scene.meshes[0];
     ASSERT_EQ(mesh.positions.size(), 6u);
     ASSERT_EQ(mesh.triangles.size(), 2u);
     expect_near(mesh.positions[1], {1, 10, 0});
@@ -124,7 +124,7 @@ TEST(GltfDeformation, OfLevelsOfDetailTheFinestIsRead) {
     file.node({{"mesh", 0}, {"name", "billboard"}});
     file.node({{"mesh", 0}, {"name", "Elm_LOD3"}, {"translation", {5, 0, 0}}}); // the only one of its name
     file.scene({0, 1, 2, 4});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 2u);
     expect_near(scene.meshes[0].positions[0], {2, 0, 0});
     expect_near(scene.meshes[1].positions[0], {5, 0, 0});
@@ -136,7 +136,7 @@ TEST(GltfDeformation, ScenesThatListNothingAreReadWhole) {
     GltfText file = GltfText::triangle();
     file.node({{"mesh", 0}});
     file.json["scenes"] = {{{"name", "empty"}}};
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     EXPECT_EQ(scene.meshes.size(), 1u);
     EXPECT_EQ(scene.notes.size(), 1u);
 }

@@ -95,7 +95,7 @@ TEST(GltfResources, ColoursInBasisUAreReplacedAndMasksRefused) {
     file.json["materials"][1].erase("alphaMode");
     TemporaryFolder folder;
     file.write(folder / "tree.gltf");
-    const GltfScene scene = flatten(GltfDocument::read(folder / "tree.gltf"));
+    const MeshScene scene = flatten(GltfDocument::read(folder / "tree.gltf"));
     EXPECT_TRUE(scene.materials[1].color_is_lost);
     EXPECT_FALSE(scene.materials[0].color_is_lost);
     ASSERT_EQ(scene.notes.size(), 1u);

@@ -11,13 +11,13 @@
 namespace kokage {
 namespace {
 
-GltfScene load(const GltfText& file) {
+MeshScene load(const GltfText& file) {
     TemporaryFolder folder;
     file.write(folder / "scene.gltf");
     return flatten(GltfDocument::read(folder / "scene.gltf"));
 }
 
-glm::vec3 geometric_normal(const GltfMesh& mesh, std::size_t t) {
+glm::vec3 geometric_normal(const SceneMesh& mesh, std::size_t t) {
     const glm::uvec3 c = mesh.triangles[t];
     return glm::normalize(
         glm::cross(mesh.positions[c.y] - mesh.positions[c.x], mesh.positions[c.z] - mesh.positions[c.x]));
@@ -36,7 +36,7 @@ TEST(GltfScene, MultipliesNodeTransforms) {
                {"scale", {2, 2, 2}},
                {"rotation", {0, 0, std::sqrt(0.5), std::sqrt(0.5)}}}); // 90 degrees about z
     file.scene({1});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 1u);
     expect_near(scene.meshes[0].positions[0], {0, 2, 0}); // (1,0,0) turned to (0,1,0), doubled
     expect_near(scene.meshes[0].positions[1], {0, 4, 0});
@@ -49,8 +49,8 @@ TEST(GltfScene, MirroringNodesKeepTheFrontOutside) {
     file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = file.normals({0, 0, 1, 0, 0, 1, 0, 0, 1});
     file.node({{"mesh", 0}, {"scale", {-1, 1, 1}}});
     file.scene({0});
-    const GltfScene scene = load(file);
-    const GltfMesh& mesh = scene.meshes[0];
+    const MeshScene scene = load(file);
+    const SceneMesh& mesh = scene.meshes[0];
     // Mirrored in x, the side that faced +Z still does: by glTF's rule the winding turns with the determinant's sign.
     expect_near(geometric_normal(mesh, 0), {0, 0, 1});
     expect_near(mesh.normals[0], {0, 0, 1});
@@ -67,8 +67,8 @@ TEST(GltfScene, NormalsStayPerpendicularUnderUnevenScale) {
         file.json.erase("scenes");
         file.node({{"mesh", 0}, {"scale", {3.0 * sign, 1.0, 2.0}}});
         file.scene({0});
-        const GltfScene scene = load(file);
-        const GltfMesh& mesh = scene.meshes[0];
+        const MeshScene scene = load(file);
+        const SceneMesh& mesh = scene.meshes[0];
         expect_near(mesh.normals[0], geometric_normal(mesh, 0), 1e-5f);
         EXPECT_GT(mesh.normals[0].y, 0.f);
     }
@@ -78,7 +78,7 @@ TEST(GltfScene, MissingNormalsComeFromTheTriangles) {
     GltfText file = GltfText::triangle();
     file.node({{"mesh", 0}, {"scale", {1, 1, -1}}});
     file.scene({0});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     expect_near(scene.meshes[0].normals[2], geometric_normal(scene.meshes[0], 0));
 }
 
@@ -87,7 +87,7 @@ TEST(GltfScene, AMeshThatTwoNodesShareComesTwice) {
     file.node({{"mesh", 0}, {"translation", {5, 0, 0}}});
     file.node({{"mesh", 0}, {"matrix", {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 7, 0, 1}}});
     file.scene({0, 1});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 2u);
     expect_near(scene.meshes[0].positions[0], {5, 0, 0});
     expect_near(scene.meshes[1].positions[0], {0, 7, 0});
@@ -100,7 +100,7 @@ TEST(GltfScene, ListedChildrenAreDrawnOnceAndInPlace) {
     for (const std::vector<int>& listed : {std::vector<int>{1}, {0, 1}, {1, 0}, {1, 1}, {0}}) {
         file.json.erase("scenes");
         file.scene(listed);
-        const GltfScene scene = load(file);
+        const MeshScene scene = load(file);
         ASSERT_EQ(scene.meshes.size(), 1u) << listed.size() << " listed, first " << listed[0];
         expect_near(scene.meshes[0].positions[0], {0, 3, 0});
     }
@@ -113,7 +113,7 @@ TEST(GltfScene, ReadsTheDefaultSceneAndNotesTheOthers) {
     file.scene({0});
     file.scene({1});
     file.json["scene"] = 1;
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 1u);
     expect_near(scene.meshes[0].positions[0], {0, 0, 9});
     ASSERT_EQ(scene.notes.size(), 1u);
@@ -127,8 +127,8 @@ TEST(GltfScene, FarFromTheOriginPositionsStayExact) {
     GltfText file = GltfText::triangle();
     file.node({{"mesh", 0}, {"translation", {1e7, 2e7, -1e7}}, {"scale", {0.001, 0.001, 0.001}}});
     file.scene({0});
-    const GltfScene scene = load(file);
-    const GltfMesh& mesh = scene.meshes[0];
+    const MeshScene scene = load(file);
+    const SceneMesh& mesh = scene.meshes[0];
     EXPECT_NEAR(mesh.positions[1].x - mesh.positions[0].x, 0.001f, 1e-9f);
     EXPECT_NEAR(scene.origin.x + double(mesh.positions[0].x), 1e7, 1e-8);
     EXPECT_NEAR(scene.origin.y + double(mesh.positions[2].y), 2e7 + 0.001, 1e-8);
@@ -144,10 +144,10 @@ TEST(GltfScene, StripsAndFansAreTriangles) {
     for (int i = 0; i < 3; ++i)
         file.node({{"mesh", i}});
     file.scene({0, 1, 2});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     ASSERT_EQ(scene.meshes.size(), 2u) << "lines are left out";
     ASSERT_EQ(scene.notes.size(), 1u);
-    for (const GltfMesh& mesh : scene.meshes) {
+    for (const SceneMesh& mesh : scene.meshes) {
         ASSERT_EQ(mesh.triangles.size(), 2u);
         for (std::size_t t = 0; t < 2; ++t)
             expect_near(geometric_normal(mesh, t), {0, 0, 1});
@@ -175,7 +175,7 @@ TEST(GltfScene, ReadsNormalisedIntegersStridesAndSparseValues) {
     file.node({{"mesh", 0}});
     file.node({{"mesh", 1}});
     file.scene({0, 1});
-    const GltfScene scene = load(file);
+    const MeshScene scene = load(file);
     EXPECT_EQ(scene.meshes[0].positions[0], glm::vec3(-1, 0, 0));
     EXPECT_EQ(scene.meshes[0].positions[2], glm::vec3(0, 1, -1));
     EXPECT_EQ(scene.meshes[1].positions[0], glm::vec3(0));
@@ -208,10 +208,10 @@ GltfText textured(const nlohmann::json& image) {
     return file;
 }
 
-void expect_small_texture(const GltfScene& scene) {
-    const GltfMaterial& material = scene.materials[std::size_t(scene.meshes[0].material)];
+void expect_small_texture(const MeshScene& scene) {
+    const SceneMaterial& material = scene.materials[std::size_t(scene.meshes[0].material)];
     ASSERT_TRUE(material.base_color_texture.has_value());
-    const GltfTexture& texture = *material.base_color_texture;
+    const SceneTexture& texture = *material.base_color_texture;
     ASSERT_TRUE(texture.alpha);
     EXPECT_EQ(texture.color->width, 2);
     EXPECT_NEAR(texture.color->at(0, 0)[0], 0.5029f, 1e-3f);
@@ -221,7 +221,7 @@ void expect_small_texture(const GltfScene& scene) {
         << "colour under transparent texels is straight, not premultiplied";
     EXPECT_EQ(texture.wrap_u, TextureWrap::clamp);
     EXPECT_EQ(texture.wrap_v, TextureWrap::mirror);
-    EXPECT_EQ(material.alpha_mode, GltfAlphaMode::mask);
+    EXPECT_EQ(material.alpha_mode, AlphaMode::mask);
     EXPECT_FLOAT_EQ(material.alpha_cutoff, 0.3f);
     EXPECT_FLOAT_EQ(material.base_color.g, 0.5f);
 }
@@ -260,7 +260,7 @@ TEST(GltfScene, AppliesTextureTransforms) {
     file.json["extensionsUsed"] = {"KHR_texture_transform"};
     file.json["extensionsRequired"] = {"KHR_texture_transform"};
     info["extensions"]["KHR_texture_transform"] = {{"offset", {0.25, 0.5}}, {"scale", {2.0, 3.0}}};
-    GltfScene scene = load(file);
+    MeshScene scene = load(file);
     EXPECT_EQ(scene.meshes[0].uvs[0], glm::vec2(0.25f, 0.5f));
     EXPECT_EQ(scene.meshes[0].uvs[1], glm::vec2(2.25f, 0.5f));
     EXPECT_EQ(scene.meshes[0].uvs[2], glm::vec2(0.25f, 3.5f));
@@ -285,8 +285,8 @@ TEST(GltfScene, ReadsMaterialExtensions) {
             {{"diffuseTransmissionFactor", 0.4}, {"diffuseTransmissionColorFactor", {0.1, 0.2, 0.3}}}}}}}};
     file.node({{"mesh", 0}});
     file.scene({0});
-    const GltfScene scene = load(file);
-    const GltfMaterial& material = scene.materials[0];
+    const MeshScene scene = load(file);
+    const SceneMaterial& material = scene.materials[0];
     EXPECT_TRUE(material.unlit);
     ASSERT_TRUE(material.diffuse_transmission.has_value());
     EXPECT_FLOAT_EQ(*material.diffuse_transmission, 0.4f);

@@ -171,9 +171,9 @@ TEST(TreeFile, ColorsAreMeanRadianceOverBaseColorOverThe99thPercentile) {
     EXPECT_FLOAT_EQ(scale, values[values.size() * 99 / 100]);
 
     const GltfDocument document = GltfDocument::read(folder / "tree.glb");
-    const GltfScene scene = flatten(document);
+    const MeshScene scene = flatten(document);
     std::size_t at_one = 0, all = 0;
-    for (const GltfMesh& mesh : scene.meshes) {
+    for (const SceneMesh& mesh : scene.meshes) {
         ASSERT_FALSE(mesh.colors.empty());
         const bool leaf = mesh.custom_attributes.contains("_RADIANCE_FRONT");
         EXPECT_EQ(leaf, !mesh.custom_attributes.contains("_RADIANCE"));
@@ -189,7 +189,7 @@ TEST(TreeFile, ColorsAreMeanRadianceOverBaseColorOverThe99thPercentile) {
     EXPECT_GT(at_one, 0u);
     EXPECT_LT(double(at_one) / double(all), 0.05);
     // Each leaf's first corner.
-    const GltfMesh& first = scene.meshes[0];
+    const SceneMesh& first = scene.meshes[0];
     const TreePart& part = tree.parts[0];
     for (std::size_t t = 0; t < part.triangles.size(); t += 97) {
         const std::size_t i = part.triangle_patch[t] + (part.kind == TreePartKind::foliage ? 0 : tree.leaves.size());
@@ -205,13 +205,13 @@ TEST(TreeFile, SplitSidesAreTwoSheetsThatFaceApart) {
     const Tree tree = small_oak(50);
     const ShadedAttributes light = random_light(tree);
     write_tree(folder / "tree.glb", tree, &light, {.split_sides = true});
-    const GltfScene scene = flatten(GltfDocument::read(folder / "tree.glb"));
-    std::vector<const GltfMesh*> sheets;
-    for (const GltfMesh& mesh : scene.meshes)
+    const MeshScene scene = flatten(GltfDocument::read(folder / "tree.glb"));
+    std::vector<const SceneMesh*> sheets;
+    for (const SceneMesh& mesh : scene.meshes)
         if (mesh.custom_attributes.contains("_RADIANCE_FRONT"))
             sheets.push_back(&mesh);
     ASSERT_EQ(sheets.size(), 2u);
-    for (const GltfMesh* sheet : sheets)
+    for (const SceneMesh* sheet : sheets)
         EXPECT_FALSE(scene.materials[std::size_t(sheet->material)].double_sided);
     ASSERT_EQ(sheets[0]->triangles.size(), sheets[1]->triangles.size());
     for (std::size_t t = 0; t < sheets[0]->triangles.size(); ++t) {
