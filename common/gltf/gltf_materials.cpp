@@ -1,12 +1,12 @@
 #include "common/gltf/gltf_materials.h"
 
+#include "common/gltf/gltf_values.h"
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string_view>
-#include <tiny_gltf.h>
 
 namespace kokage {
 namespace {
@@ -40,9 +40,9 @@ class MaterialReader {
         material.roughness = glm::clamp(float(pbr.roughnessFactor), 0.f, 1.f);
         const tinygltf::Value* diffuse = extension(source, "KHR_materials_pbrSpecularGlossiness");
         if (diffuse) {
-            material.base_color = color4(diffuse->Get("diffuseFactor"), glm::vec4(1.f));
+            material.base_color = color4(member(*diffuse, "diffuseFactor"), glm::vec4(1.f));
             if (diffuse->Has("diffuseTexture"))
-                read_color_texture(material, texture_info(diffuse->Get("diffuseTexture")), place);
+                read_color_texture(material, texture_info(member(*diffuse, "diffuseTexture")), place);
         } else {
             for (std::size_t c = 0; c < 4 && c < pbr.baseColorFactor.size(); ++c)
                 material.base_color[c] = float(pbr.baseColorFactor[c]);
@@ -59,7 +59,7 @@ class MaterialReader {
         if (const tinygltf::Value* transmitted = extension(source, "KHR_materials_diffuse_transmission"))
             read_diffuse_transmission(material, *transmitted, place);
         if (const tinygltf::Value* transmission = extension(source, "KHR_materials_transmission"))
-            material.transmission = glm::clamp(number(transmission->Get("transmissionFactor"), 0.f), 0.f, 1.f);
+            material.transmission = glm::clamp(number(member(*transmission, "transmissionFactor"), 0.f), 0.f, 1.f);
         return material;
     }
 
@@ -85,8 +85,8 @@ class MaterialReader {
 
     /// Factors times the means of their textures: a leaf has one transmittance here.
     void read_diffuse_transmission(SceneMaterial& material, const tinygltf::Value& source, const std::string& place) {
-        float factor = number(source.Get("diffuseTransmissionFactor"), 0.f);
-        glm::vec3 color(color4(source.Get("diffuseTransmissionColorFactor"), glm::vec4(1.f)));
+        float factor = number(member(source, "diffuseTransmissionFactor"), 0.f);
+        glm::vec3 color(color4(member(source, "diffuseTransmissionColorFactor"), glm::vec4(1.f)));
         const Image* mask = material.base_color_texture && material.base_color_texture->alpha
                                 ? material.base_color_texture->alpha.get()
                                 : nullptr;
@@ -94,7 +94,7 @@ class MaterialReader {
             if (!source.Has(name))
                 continue;
             try {
-                const SceneTexture read = texture(texture_info(source.Get(name)), place);
+                const SceneTexture read = texture(texture_info(member(source, name)), place);
                 if (name == std::string_view("diffuseTransmissionTexture"))
                     factor *= read.alpha ? mean(*read.alpha, mask, material.alpha_cutoff).r : 1.f;
                 else
@@ -135,6 +135,11 @@ class MaterialReader {
         return value.IsNumber() ? float(value.GetNumberAsDouble()) : missing;
     }
 
+    static int integer(const tinygltf::Value& value, int missing) {
+        const double found = value.IsNumber() ? value.GetNumberAsDouble() : missing;
+        return std::abs(found) < 1e9 ? int(found) : -1;
+    }
+
     static glm::vec4 color4(const tinygltf::Value& value, glm::vec4 missing) {
         if (value.IsArray())
             for (std::size_t c = 0; c < 4 && c < value.ArrayLen(); ++c)
@@ -143,9 +148,9 @@ class MaterialReader {
     }
 
     static TextureInfo texture_info(const tinygltf::Value& info) {
-        TextureInfo result{int(number(info.Get("index"), -1.f)), int(number(info.Get("texCoord"), 0.f)), {}};
-        if (info.Has("extensions") && info.Get("extensions").IsObject())
-            result.extensions = info.Get("extensions").Get<tinygltf::Value::Object>();
+        TextureInfo result{integer(member(info, "index"), -1), integer(member(info, "texCoord"), 0), {}};
+        if (info.Has("extensions") && member(info, "extensions").IsObject())
+            result.extensions = member(info, "extensions").Get<tinygltf::Value::Object>();
         return result;
     }
 
@@ -163,10 +168,10 @@ class MaterialReader {
         }
         if (const auto transform = info.extensions.find("KHR_texture_transform"); transform != info.extensions.end()) {
             const tinygltf::Value& value = transform->second;
-            result.offset = glm::vec2(color4(value.Get("offset"), glm::vec4(0.f)));
-            result.scale = glm::vec2(color4(value.Get("scale"), glm::vec4(1.f)));
-            result.rotation = number(value.Get("rotation"), 0.f);
-            result.texture_coordinates = int(number(value.Get("texCoord"), float(info.texture_coordinates)));
+            result.offset = glm::vec2(color4(member(value, "offset"), glm::vec4(0.f)));
+            result.scale = glm::vec2(color4(member(value, "scale"), glm::vec4(1.f)));
+            result.rotation = number(member(value, "rotation"), 0.f);
+            result.texture_coordinates = integer(member(value, "texCoord"), info.texture_coordinates);
             if (!std::isfinite(result.offset.x + result.offset.y + result.scale.x + result.scale.y + result.rotation))
                 document_.fail(place + ": its texture's transform is not finite");
         }
@@ -177,7 +182,7 @@ class MaterialReader {
     static int image_of(const tinygltf::Texture& source) {
         const auto named = [&](const char* name) {
             const auto found = source.extensions.find(name);
-            return found == source.extensions.end() ? -1 : int(number(found->second.Get("source"), -1.f));
+            return found == source.extensions.end() ? -1 : integer(member(found->second, "source"), -1);
         };
         if (const int webp = named("EXT_texture_webp"); webp >= 0)
             return webp;

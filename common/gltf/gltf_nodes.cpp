@@ -1,6 +1,7 @@
 #include "common/gltf/gltf_nodes.h"
 
 #include "common/gltf/check_gltf.h"
+#include "common/gltf/gltf_values.h"
 #include "common/services/count_text.h"
 
 #include <algorithm>
@@ -8,7 +9,6 @@
 #include <cmath>
 #include <glm/gtc/quaternion.hpp>
 #include <map>
-#include <tiny_gltf.h>
 
 namespace kokage {
 namespace {
@@ -59,11 +59,11 @@ std::vector<glm::dmat4> instance_transforms(const GltfDocument& document, int in
     if (extension == node.extensions.end())
         return {world};
     const std::string place = "node " + std::to_string(index) + ", EXT_mesh_gpu_instancing";
-    const tinygltf::Value& attributes = extension->second.Get("attributes");
+    const tinygltf::Value& attributes = member(extension->second, "attributes");
     std::size_t count = 0;
     bool first = true;
     const auto values = [&](const char* name, int components) {
-        const tinygltf::Value& accessor = attributes.Get(name);
+        const tinygltf::Value& accessor = member(attributes, name);
         if (!accessor.IsInt())
             return std::vector<float>();
         std::vector<float> result = document.floats(accessor.Get<int>(), components);

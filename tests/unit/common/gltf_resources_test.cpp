@@ -106,6 +106,25 @@ TEST(GltfResources, ColoursInBasisUAreReplacedAndMasksRefused) {
     EXPECT_EQ(complaint(file), "");
 }
 
+TEST(GltfResources, ExtensionsThatAreNoObjectsAreAsIfTheyWereNot) {
+    for (const nlohmann::json& value : {nlohmann::json("text"), nlohmann::json(7), nlohmann::json::array({1})}) {
+        GltfText file = tree_of(plain_primitive);
+        nlohmann::json& leaf = file.json["materials"][1];
+        for (const char* name :
+             {"KHR_materials_diffuse_transmission", "KHR_materials_transmission", "KHR_materials_unlit"})
+            leaf["extensions"][name] = value;
+        leaf["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = value;
+        file.json["textures"][0]["extensions"]["EXT_texture_webp"] = value;
+        EXPECT_EQ(complaint(file), "") << value;
+        leaf["extensions"]["KHR_materials_pbrSpecularGlossiness"] = value;
+        EXPECT_EQ(complaint(file), "") << value;
+        file.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"] = value;
+        EXPECT_EQ(complaint(file), "") << value;
+        file.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"] = {{"attributes", value}};
+        expect_says(complaint(file), "none of TRANSLATION");
+    }
+}
+
 TEST(GltfResources, NormalMapsThatAreMissingDoNoHarm) {
     GltfText file = tree_of(plain_primitive);
     file.json["images"].push_back({{"uri", "missing_normal.png"}});
