@@ -11,7 +11,7 @@ namespace kokage {
 namespace {
 
 struct BarkMeasures {
-    glm::vec3 twig, young, old; ///< mean colours
+    glm::vec3 twig, young, old; ///< mean colours; `old` is not used where bark turns with age: its pattern holds both
     float young_depth_m, old_depth_m, roughness;
 };
 
@@ -32,18 +32,49 @@ constexpr std::array<BarkMeasures, 10> measures = {{
     {{0.130f, 0.082f, 0.062f}, {0.150f, 0.092f, 0.070f}, {0.140f, 0.100f, 0.080f}, 0.002f, 0.004f, 0.50f}, // cherry
 }};
 
-/// Scales the image's channels so that their means are `mean`; what would pass 1 stays at 1.
-void set_mean(Image& image, const glm::vec3& mean) {
+/// Birch, aspen and pine turn into something else as they age: young bark gives way to old, patch by patch, and both
+/// keep their colours. Of the others all bark darkens a little.
+bool turns_with_age(BarkKind kind) {
+    return kind == BarkKind::birch || kind == BarkKind::aspen || kind == BarkKind::pine;
+}
+
+glm::dvec3 mean_of(const Image& image) {
     glm::dvec3 sum(0.0);
-    const int count = image.width * image.height;
-    for (int i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c)
-            sum[c] += double(image.pixels[std::size_t(i) * 3 + std::size_t(c)]);
-    for (int i = 0; i < count; ++i)
-        for (int c = 0; c < 3; ++c) {
-            float& value = image.pixels[std::size_t(i) * 3 + std::size_t(c)];
-            value = std::min(1.f, float(double(value) * double(mean[c]) * count / std::max(sum[c], 1e-12)));
-        }
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        sum[i % 3] += double(image.pixels[i]);
+    return sum * 3.0 / double(image.pixels.size());
+}
+
+/// Scales the channels; what would pass 1 stays at 1.
+void scale(Image& image, const glm::dvec3& factor) {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = std::min(1.f, float(double(image.pixels[i]) * factor[i % 3]));
+}
+
+/// Colour and height as the pattern gives them.
+void draw(BarkKind kind, float age, Image& color, Image& height) {
+    const BarkPattern pattern(kind, age);
+    const int size = color.width;
+    parallel_blocks(std::size_t(size), 16, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t y = begin; y < end; ++y)
+            for (int x = 0; x < size; ++x) {
+                const BarkPattern::Point point =
+                    pattern.at({(float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size)});
+                for (std::size_t c = 0; c < 3; ++c)
+                    color.at(x, int(y))[c] = std::max(0.01f, point.color[c]);
+                height.at(x, int(y))[0] = point.height;
+            }
+    });
+}
+
+/// What the pattern's colours are scaled by at an age.
+glm::dvec3 color_scale(BarkKind kind, float age, const Image& drawn) {
+    const BarkMeasures& m = measures.at(std::size_t(kind));
+    if (!turns_with_age(kind))
+        return glm::dvec3(glm::mix(m.young, m.old, age)) / mean_of(drawn);
+    Image young(64, 64, 3), height(64, 64, 1);
+    draw(kind, 0, young, height);
+    return glm::dvec3(m.young) / mean_of(young);
 }
 
 /// Stretches heights to 0..1; even ones become 0.5.
@@ -66,7 +97,9 @@ float bark_roughness(BarkKind kind) {
 
 glm::vec3 mean_bark_color(BarkKind kind, float age) {
     const BarkMeasures& m = measures.at(std::size_t(kind));
-    return glm::mix(m.young, m.old, age);
+    if (!turns_with_age(kind))
+        return glm::mix(m.young, m.old, age);
+    return glm::vec3(mean_of(bark_image(kind, age, 64).color));
 }
 
 BarkImage bark_image(BarkKind kind, float age, int size) {
@@ -75,18 +108,8 @@ BarkImage bark_image(BarkKind kind, float age, int size) {
     const BarkMeasures& m = measures.at(std::size_t(kind));
     BarkImage bark{Image(size, size, 3), Image(size, size, 1), glm::mix(m.young_depth_m, m.old_depth_m, age),
                    m.roughness};
-    const BarkPattern pattern(kind, age);
-    parallel_blocks(std::size_t(size), 16, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t y = begin; y < end; ++y)
-            for (int x = 0; x < size; ++x) {
-                const BarkPattern::Point point =
-                    pattern.at({(float(x) + 0.5f) / float(size), (float(y) + 0.5f) / float(size)});
-                for (int c = 0; c < 3; ++c)
-                    bark.color.at(x, int(y))[c] = std::max(0.01f, point.color[c]);
-                bark.height.at(x, int(y))[0] = point.height;
-            }
-    });
-    set_mean(bark.color, mean_bark_color(kind, age));
+    draw(kind, age, bark.color, bark.height);
+    scale(bark.color, color_scale(kind, age, bark.color));
     set_range(bark.height);
     return bark;
 }

@@ -69,7 +69,7 @@ BarkZone bark_zone(const BarkPlace& place, const GrowthParameters& p, float trun
     Random random(p.seed, streams::of(streams::bark_zone, patch));
     const float height = place.height_m / std::max(tree_height_m, 1e-6f) * random.uniform(0.75f, 1.25f);
     const float age = (change->young_above - height) / (change->young_above - change->old_below);
-    return {.is_twig = false, .age = age > 0.75f ? 1.f : age > 0.25f ? 0.5f : 0.f};
+    return {.is_twig = false, .age = std::clamp(std::round(3 * age), 0.f, 3.f) / 3};
 }
 
 BarkInZones split_by_zone(const TreePart& bark, const std::vector<BarkPlace>& places, const GrowthParameters& p) {

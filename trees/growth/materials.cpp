@@ -60,13 +60,16 @@ TreeMaterial bark_material(const GrowthParameters& p, const BarkZone& zone) {
         material.roughness = 0.8f;
         return material;
     }
-    material.name = p.species + (zone.age == 1 ? " old bark" : zone.age == 0.5f ? " middle bark" : " bark");
-    material.base_color = mean_bark_color(p.bark, zone.age);
+    material.name = p.species + (zone.age == 1     ? " old bark"
+                                 : zone.age > 0.5f ? " older bark"
+                                 : zone.age > 0    ? " younger bark"
+                                                   : " bark");
     material.roughness = bark_roughness(p.bark);
     if (p.textures) {
         const std::shared_ptr<const BarkImage> bark = drawn_bark(p.bark, zone.age);
         material.base_color_texture = std::shared_ptr<const Image>(bark, &bark->color);
-        material.base_color = glm::vec3(1.f);
+    } else {
+        material.base_color = mean_bark_color(p.bark, zone.age);
     }
     return material;
 }

@@ -70,7 +70,7 @@ TEST(BarkImage, KeepsToItsRangesAndItsMeanColour) {
                     mean[c] += double(value) / (96 * 96);
                 }
             for (int c = 0; c < 3; ++c)
-                EXPECT_NEAR(mean[c], mean_bark_color(BarkKind(k), age)[c], 0.01) << bark_kind_names()[k];
+                EXPECT_NEAR(mean[c], mean_bark_color(BarkKind(k), age)[c], 0.015) << bark_kind_names()[k];
             const auto [low, high] = std::minmax_element(bark.height.pixels.begin(), bark.height.pixels.end());
             EXPECT_EQ(*low, 0.f);
             EXPECT_EQ(*high, 1.f);

@@ -51,7 +51,7 @@ TEST(BarkZones, CutWholePatchesAndLoseNothing) {
         }
         EXPECT_EQ(seen.size(), tree.bark_patch_count);
         EXPECT_EQ(*seen.rbegin() + 1, tree.bark_patch_count);
-        EXPECT_EQ(zones, std::string(species) == "oak" ? 2u : 4u) << species;
+        EXPECT_EQ(zones, std::string(species) == "oak" ? 2u : 5u) << species;
         EXPECT_EQ(tree.materials.size(), zones + 1);
         EXPECT_TRUE(is_sound(tree));
         EXPECT_NO_THROW(validate(make_patches(tree)));
