@@ -56,7 +56,8 @@ void add_growing_options(CLI::App& app, TreeSource& source) {
         ->type_name("N")
         ->group("Tree");
     app.add_option("--set", source.settings,
-                   "Grown trees: a parameter's value, for example seed=7; 'kokage grow --describe oak' lists them; may "
+                   "Grown trees: a parameter's value, for example seed=7 or season=autumn; 'kokage grow --describe "
+                   "oak' lists them; may "
                    "be repeated")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false)

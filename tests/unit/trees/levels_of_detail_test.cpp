@@ -2,6 +2,7 @@
 #include "common/services/error.h"
 #include "common/services/random.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/tree_files.h"
 #include "tests/unit/trees/growth_shape.h"
 #include "trees/growth.h"
 #include "trees/levels_of_detail.h"
@@ -21,7 +22,7 @@ Tree grown(const char* species, int leaves = 6000) {
 }
 
 /// Some light, different on every side.
-ShadedAttributes random_light(const Tree& tree) {
+ShadedAttributes noise_light(const Tree& tree) {
     ShadedAttributes light;
     Random random(5);
     for (std::size_t i = 0; i < tree.leaves.size() + tree.bark_patch_count; ++i) {
@@ -126,7 +127,7 @@ TEST(LevelsOfDetail, EveryLeafIsStoodForByOneNearIt) {
 // The slow twin: sums over groups, one group at a time.
 TEST(LevelsOfDetail, SidesHaveTheMeanLightOfThoseTheyStandFor) {
     const Tree full = grown("beech", 1500);
-    const ShadedAttributes light = random_light(full);
+    const ShadedAttributes light = noise_light(full);
     const std::vector<double> areas = areas_of(full);
     for (int level = 1; level <= 3; ++level) {
         const LevelOfDetail lod = level_of_detail(full, level);
@@ -190,12 +191,24 @@ TEST(LevelsOfDetail, AreWrittenAndReadBack) {
     const TemporaryFolder folder;
     const Tree full = grown("birch", 900);
     const LevelOfDetail lod = level_of_detail(full, 2);
-    const ShadedAttributes light = transfer_light(full, random_light(full), lod);
+    const ShadedAttributes light = transfer_light(full, noise_light(full), lod);
     write_tree(folder / "lod.glb", lod.tree, &light);
     const Tree read = read_tree(folder / "lod.glb");
     EXPECT_EQ(read.leaves.size(), 100u);
     EXPECT_EQ(read.bark_patch_count, lod.tree.bark_patch_count);
     EXPECT_EQ(read_shaded(folder / "lod.glb").radiance_front, light.radiance_front);
+}
+
+TEST(LevelsOfDetail, KeepLeafAreaOfOtherProgramsTrees) {
+    const auto data = data_folder();
+    if (!data)
+        GTEST_SKIP() << "skipped: KOKAGE_DATA is not set";
+    for (const char* name : {"eztree_ash_large", "quaternius_tex_birch_8", "quaternius_common_tree_1"}) {
+        const Tree full = read_tree(*data / "trees" / (std::string(name) + ".glb"));
+        const double area = level_of_detail(full, 0).leaf_area;
+        for (int level = 1; level <= 3; ++level)
+            EXPECT_NEAR(level_of_detail(full, level).leaf_area, area, 0.01 * area) << name << ", level " << level;
+    }
 }
 
 TEST(LevelsOfDetail, TakeTreesOfAnyKind) {
@@ -205,7 +218,7 @@ TEST(LevelsOfDetail, TakeTreesOfAnyKind) {
             const LevelOfDetail lod = level_of_detail(tiny, level);
             EXPECT_GE(lod.tree.leaves.size(), 1u);
             EXPECT_TRUE(is_sound(lod.tree));
-            EXPECT_NO_THROW(transfer_light(tiny, random_light(tiny), lod));
+            EXPECT_NO_THROW(transfer_light(tiny, noise_light(tiny), lod));
         }
     }
     GrowthParameters winter = oak_parameters();
