@@ -136,9 +136,19 @@ std::uint32_t lowest_vertex(const BarkMesh& mesh, const BarkPiece& piece) {
     });
 }
 
+/// Wood is long for its thickness; stones, pots and lumps of soil are not.
+bool is_long(const std::vector<AxisNode>& nodes) {
+    constexpr float kLeastLength = 3; // in radii
+    float thickest = 0;
+    for (const AxisNode& node : nodes)
+        thickest = std::max(thickest, node.radius_m);
+    return nodes.front().reach >= kLeastLength * thickest;
+}
+
 /// The trunk first, then thick before thin.
 std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
-                                       const std::vector<std::optional<TubeAxis>>& tubes, double low, double high) {
+                                       const std::vector<std::optional<TubeAxis>>& tubes,
+                                       const std::vector<bool>& is_wood, double low, double high) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     const auto thickness = [&](std::size_t piece) { // in steps of 4 %, so that rounding does not decide
@@ -158,7 +168,8 @@ std::vector<std::size_t> joining_order(const std::vector<BarkPiece>& pieces,
     };
     auto trunk = order.end();
     for (auto i = order.begin(); i != order.end(); ++i)
-        if (pieces[*i].low.y <= 0.5 * (low + high) && (trunk == order.end() || volume(*i) > volume(*trunk)))
+        if (is_wood[*i] && pieces[*i].low.y <= 0.5 * (low + high) &&
+            (trunk == order.end() || volume(*i) > volume(*trunk)))
             trunk = i;
     if (trunk != order.end())
         std::rotate(order.begin(), trunk, trunk + 1);
@@ -171,6 +182,8 @@ class PieceJoiner {
     PieceJoiner(BarkMesh& mesh, BarkSkeleton& result) : mesh_(mesh), result_(result), writer_(result.skeleton) {
         for (const BarkPiece& piece : mesh.pieces()) {
             tubes_.push_back(mesh.tube_axis(piece));
+            is_wood_.push_back(
+                is_long(tubes_.back() ? tubes_.back()->nodes : mesh.axis_tree(piece, lowest_vertex(mesh, piece))));
             low_ = std::min(low_, piece.low.y);
             high_ = std::max(high_, piece.high.y);
         }
@@ -180,15 +193,21 @@ class PieceJoiner {
     /// first.
     void join_all() {
         constexpr int kMostRounds = 64;
-        std::vector<std::size_t> pending = joining_order(mesh_.pieces(), tubes_, low_, high_);
+        std::vector<std::size_t> pending = joining_order(mesh_.pieces(), tubes_, is_wood_, low_, high_);
+        if (!is_wood_[pending.front()]) // then none that reaches low is
+            return;
         ground_ = mesh_.pieces()[pending.front()].low.y;
         join(pending.front());
         pending.erase(pending.begin());
         for (int round = 0; round < kMostRounds; ++round)
             if (std::erase_if(pending, [&](std::size_t piece) { return join_on_axis(piece); }) == 0)
                 break;
-        for (const std::size_t piece : pending)
-            join(piece);
+        for (const std::size_t piece : pending) {
+            if (is_wood_[piece])
+                join(piece);
+            else
+                ++result_.lumps;
+        }
     }
 
   private:
@@ -242,6 +261,7 @@ class PieceJoiner {
     BranchWriter writer_;
     StandingWood wood_;
     std::vector<std::optional<TubeAxis>> tubes_;
+    std::vector<bool> is_wood_; ///< by its shape; what begins on an axis is wood in any case
     double low_ = std::numeric_limits<double>::infinity(), high_ = -low_;
     double ground_ = 0; ///< where the trunk begins
 };

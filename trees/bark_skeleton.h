@@ -10,6 +10,7 @@ struct BarkSkeleton {
     Skeleton skeleton;
     std::size_t pieces = 0;   ///< connected pieces of bark
     std::size_t stems = 0;    ///< branches of order 0
+    std::size_t lumps = 0;    ///< pieces too stout for wood, such as stones and pots: not in the skeleton
     std::size_t floating = 0; ///< pieces that touch no thicker one and were joined to the nearest
 };
 

@@ -4,6 +4,8 @@
 #include "trees/find_branching.h"
 
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -53,9 +55,40 @@ void measure(const Tree& tree, TreeDescription& d) {
     d.largest_leaf_m2 = leaf_areas.back();
 }
 
+/// The area below the leaves' centres, as foresters measure crowns.
+double crown_projection(const Tree& tree) {
+    constexpr std::size_t kSectors = 32;
+    glm::dvec2 middle(0.0);
+    for (const Leaf& leaf : tree.leaves)
+        middle += glm::dvec2(leaf.centre.x, leaf.centre.z) / double(tree.leaves.size());
+    std::array<double, kSectors> reach{};
+    for (const Leaf& leaf : tree.leaves) {
+        const glm::dvec2 way = glm::dvec2(leaf.centre.x, leaf.centre.z) - middle;
+        const double turn = (std::atan2(way.y, way.x) + kPiDouble) / (2 * kPiDouble);
+        double& farthest = reach[std::min(std::size_t(turn * double(kSectors)), kSectors - 1)];
+        farthest = std::max(farthest, glm::length(way));
+    }
+    double area = 0;
+    for (const double r : reach)
+        area += r * r * kPiDouble / double(kSectors);
+    return area;
+}
+
 void count_orders(const Tree& tree, TreeDescription& d) {
-    for (const Branch& branch : tree.skeleton.branches)
-        ++d.orders[branch.order].branches;
+    for (const Branch& branch : tree.skeleton.branches) {
+        TreeDescription::Order& order = d.orders[branch.order];
+        ++order.branches;
+        for (std::size_t n = 1; n < branch.nodes.size(); ++n)
+            order.mean_length_m += double(glm::distance(branch.nodes[n - 1].position, branch.nodes[n].position));
+        float thickest = 0;
+        for (const Branch::Node& node : branch.nodes)
+            thickest = std::max(thickest, node.radius_m);
+        order.mean_radius_m += double(thickest);
+    }
+    for (auto& [number, order] : d.orders) {
+        order.mean_length_m /= double(order.branches);
+        order.mean_radius_m /= double(order.branches);
+    }
     std::set<std::int32_t> bearing;
     for (const Leaf& leaf : tree.leaves) {
         if (leaf.branch < 0 || std::size_t(leaf.branch) >= tree.skeleton.branches.size()) {
@@ -71,6 +104,23 @@ void count_orders(const Tree& tree, TreeDescription& d) {
 
 nlohmann::json vector_json(const glm::dvec3& v) {
     return {v.x, v.y, v.z};
+}
+
+/// What a person should look at twice: a file in other units, or with another axis up.
+void doubt_size_and_axis(const Tree& tree, TreeDescription& d) {
+    const double height = d.high.y - d.low.y;
+    if (d.triangles > 0 && (height > 60 || height < 0.02))
+        d.notes.push_back("it is " + length_text(height) +
+                          " high, if the file's unit is the metre; --scale sets another");
+    const auto trunk = std::find_if(tree.skeleton.branches.begin(), tree.skeleton.branches.end(),
+                                    [](const Branch& branch) { return branch.parent < 0; });
+    if (tree.branching_known || trunk == tree.skeleton.branches.end() || trunk->nodes.size() < 2)
+        return;
+    const glm::vec3 way = trunk->nodes.back().position - trunk->nodes.front().position;
+    const float length = glm::length(way);
+    if (length > 0 && std::abs(way.y) < 0.3f * length)
+        d.notes.push_back(std::string("its trunk lies along the ") + (std::abs(way.x) > std::abs(way.z) ? "x" : "z") +
+                          " axis: in glTF +Y is up; turn it in the program that it comes from");
 }
 
 /// Shortest decimal that reads back as the same float: 0.1, not 0.10000000149.
@@ -92,7 +142,9 @@ TreeDescription describe(const Tree& tree) {
     d.was_shaded = tree.was_shaded;
     d.notes = tree.notes;
     measure(tree, d);
+    d.crown_projection_m2 = crown_projection(tree);
     count_orders(tree, d);
+    doubt_size_and_axis(tree, d);
     for (const TreePart& part : tree.parts) {
         const TreeMaterial& material = tree.materials[part.material];
         TreeDescription::Surface surface;
@@ -118,6 +170,8 @@ std::string text_of(const TreeDescription& d) {
     if (d.leaves > 0)
         text += ", " + area_text(d.leaf_area_m2) + " together (one side), median " + area_text(d.median_leaf_m2) +
                 ", smallest " + area_text(d.smallest_leaf_m2) + ", largest " + area_text(d.largest_leaf_m2);
+    if (d.crown_projection_m2 > 0)
+        text += "; leaf area index " + formatted("%.3g", d.leaf_area_m2 / d.crown_projection_m2);
     text += "\nbark         " + counted(d.bark_patches, "patch", "patches") + ", " + area_text(d.bark_area_m2) + "\n";
     std::size_t branches = 0;
     for (const auto& [number, order] : d.orders)
@@ -130,6 +184,12 @@ std::string text_of(const TreeDescription& d) {
         text += label + counted(order.branches, "branch", "branches") + ", " + counted(order.leaves, "leaf", "leaves");
         if (order.bearing < order.branches && order.leaves > 0)
             text += " on " + count_text(order.bearing) + " of them";
+        if (order.mean_length_m > 0)
+            text += "; " + length_text(order.mean_length_m) + " long";
+        if (order.mean_radius_m > 0)
+            text += ", radius " + length_text(order.mean_radius_m);
+        else if (order.mean_length_m > 0)
+            text += ", imagined";
         text += "\n";
     }
     if (d.leaves_without_branch > 0)
@@ -157,6 +217,7 @@ nlohmann::json json_of(const TreeDescription& d) {
                            {"bounds", {{"low", vector_json(d.low)}, {"high", vector_json(d.high)}}},
                            {"height_m", d.high.y - d.low.y},
                            {"crown_radius_m", d.crown_radius_m},
+                           {"crown_projection_m2", d.crown_projection_m2},
                            {"triangles", d.triangles},
                            {"leaves",
                             {{"count", d.leaves},
@@ -171,8 +232,12 @@ nlohmann::json json_of(const TreeDescription& d) {
                            {"surfaces", nlohmann::json::array()},
                            {"notes", d.notes}};
     for (const auto& [number, order] : d.orders)
-        json["branching"]["orders"].push_back(
-            {{"order", number}, {"branches", order.branches}, {"bearing", order.bearing}, {"leaves", order.leaves}});
+        json["branching"]["orders"].push_back({{"order", number},
+                                               {"branches", order.branches},
+                                               {"bearing", order.bearing},
+                                               {"leaves", order.leaves},
+                                               {"mean_length_m", order.mean_length_m},
+                                               {"mean_radius_m", order.mean_radius_m}});
     for (const TreeDescription::Surface& s : d.surfaces) {
         nlohmann::json surface = {{"material", s.material},
                                   {"kind", s.kind == TreePartKind::foliage ? "foliage" : "bark"},

@@ -14,6 +14,8 @@ struct TreeDescription {
         std::size_t branches = 0;
         std::size_t bearing = 0; ///< branches that bear leaves themselves
         std::size_t leaves = 0;
+        double mean_length_m = 0; ///< of the branches, along their axes
+        double mean_radius_m = 0; ///< of their wood where it is thickest; 0 for imagined twigs
     };
     struct Surface {
         std::string material;
@@ -28,6 +30,7 @@ struct TreeDescription {
     double crown_radius_m = 0;      ///< half the larger horizontal extent of the foliage
     std::size_t leaves = 0, bark_patches = 0, triangles = 0;
     double leaf_area_m2 = 0, bark_area_m2 = 0; ///< one side, holes of alpha masks taken out
+    double crown_projection_m2 = 0; ///< ground under the leaves: their reach in 32 sectors around their middle
     double smallest_leaf_m2 = 0, median_leaf_m2 = 0, largest_leaf_m2 = 0;
     bool branching_known = true;
     bool was_shaded = false; ///< as Tree::was_shaded

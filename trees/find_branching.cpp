@@ -1,5 +1,6 @@
 #include "trees/find_branching.h"
 
+#include "common/services/count_text.h"
 #include "common/services/parallel.h"
 #include "trees/bark_skeleton.h"
 
@@ -264,14 +265,18 @@ void infer_branching(Tree& tree) {
     tree.skeleton = std::move(bark.skeleton);
     if (tree.skeleton.branches.empty()) {
         tree.skeleton.branches.push_back(imagined_trunk(tree));
-        tree.notes.push_back("no bark: a trunk was imagined from the ground to the middle of the leaves");
+        tree.notes.push_back(std::string(bark.pieces > 0 ? "what is not foliage is too stout for wood" : "no bark") +
+                             ": a trunk was imagined from the ground to the middle of the leaves");
     } else {
-        tree.notes.push_back("branching inferred from " + std::to_string(bark.pieces) +
-                             " connected pieces of bark: " + std::to_string(tree.skeleton.branches.size()) +
-                             " branches, " + std::to_string(bark.stems) + (bark.stems == 1 ? " stem" : " stems"));
+        tree.notes.push_back("branching inferred from " + std::to_string(bark.pieces) + " connected pieces of bark: " +
+                             counted(tree.skeleton.branches.size(), "branch", "branches") + ", " +
+                             std::to_string(bark.stems) + (bark.stems == 1 ? " stem" : " stems"));
+        if (bark.lumps > 0)
+            tree.notes.push_back(counted(bark.lumps, "piece", "pieces") +
+                                 " of bark too stout for wood (stones, a pot) left out of the branching");
         if (bark.floating > 0)
-            tree.notes.push_back(std::to_string(bark.floating) +
-                                 " pieces of bark touch no thicker wood and were joined to the nearest");
+            tree.notes.push_back(counted(bark.floating, "piece of bark touches", "pieces of bark touch") +
+                                 " no thicker wood: joined to the nearest");
     }
     if (tree.leaves.empty())
         return;

@@ -132,11 +132,22 @@ std::vector<Leaf> leaf_centres(const Tree& tree, std::uint32_t count) {
     return leaves;
 }
 
-/// Bark patches: about as long as the wood is thick around, and turning by at most 45 degrees, except on twigs, which a
-/// ring fits.
+/// Radius of the disc of an average leaf's area.
+float mean_leaf_radius(const Tree& tree) {
+    double area = 0;
+    for (const TreePart& part : tree.parts)
+        if (part.kind == TreePartKind::foliage)
+            for (const glm::uvec3& triangle : part.triangles)
+                area += area_of(part.positions, triangle);
+    return tree.leaves.empty() ? 0.f : float(std::sqrt(area / double(tree.leaves.size()) / kPiDouble));
+}
+
+/// Bark patches: about as long as the wood is thick around, but no smaller than half a leaf, and turning by at most 45
+/// degrees, except on twigs, which a ring fits.
 void cut_bark(Tree& tree, std::vector<SceneMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
               std::vector<PartBuilder>& parts, float crown) {
     const NearestAxis nearest_axis(tree.skeleton);
+    const float least = std::max(0.005f * crown, 0.5f * mean_leaf_radius(tree));
     SurfacePatchLimits limits;
     limits.max_turn = 0.7854f;
     limits.keep_cards = false;
@@ -144,7 +155,7 @@ void cut_bark(Tree& tree, std::vector<SceneMesh>& bark, const std::map<std::pair
         const AxisPlace nearest = nearest_axis.at(place);
         // A quarter of the circumference wide and as long as the circumference: an area of (2 pi r)^2 / 4.
         const float around = 2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown);
-        return std::max(0.5f * around / std::sqrt(kPi), 0.005f * crown);
+        return std::max(0.5f * around / std::sqrt(kPi), least);
     };
     for (SceneMesh& mesh : bark) {
         const std::vector<std::uint32_t> patch = surface_patches(mesh.positions, mesh.triangles, limits);

@@ -67,20 +67,44 @@ std::optional<Environment> made_environment(const Surroundings& surroundings) {
     return {};
 }
 
+/// The lowest point of bark within a few radii of a stem's foot, or the foot itself.
+float lowest_bark_near(const Tree& tree, const Branch::Node& foot) {
+    float lowest = foot.position.y;
+    for (const TreePart& part : tree.parts) {
+        if (part.kind != TreePartKind::bark)
+            continue;
+        for (const glm::vec3& position : part.positions)
+            if (glm::distance(position, foot.position) <= 3 * foot.radius_m)
+                lowest = std::min(lowest, position.y);
+    }
+    return lowest;
+}
+
 } // namespace
 
 float foot_height(const Tree& tree) {
-    float lowest = std::numeric_limits<float>::max();
-    if (tree.branching_known)
-        for (const Branch& branch : tree.skeleton.branches)
-            if (branch.parent < 0)
-                lowest = std::min(lowest, branch.nodes.front().position.y);
-    if (lowest != std::numeric_limits<float>::max())
+    constexpr float kNone = std::numeric_limits<float>::max();
+    float lowest = kNone, thickest = 0;
+    for (const Branch& branch : tree.skeleton.branches)
+        if (branch.parent < 0)
+            thickest = std::max(thickest, branch.nodes.front().radius_m);
+    for (const Branch& branch : tree.skeleton.branches) {
+        const Branch::Node& foot = branch.nodes.front();
+        if (branch.parent >= 0 || foot.radius_m < 0.5f * thickest) // of a bush, the stems
+            continue;
+        if (tree.branching_known) {
+            lowest = std::min(lowest, foot.position.y);
+        } else if (thickest >
+                   0) { // an inferred axis begins inside of the wood: its lowest bark thereabouts is the foot
+            lowest = std::min(lowest, lowest_bark_near(tree, foot));
+        }
+    }
+    if (lowest != kNone)
         return lowest;
     for (const TreePart& part : tree.parts)
         for (const glm::vec3& position : part.positions)
             lowest = std::min(lowest, position.y);
-    return lowest == std::numeric_limits<float>::max() ? 0.f : lowest;
+    return lowest == kNone ? 0.f : lowest;
 }
 
 void add_surroundings_options(CLI::App& app, Surroundings& s) {

@@ -33,8 +33,8 @@ bool is_environment_image(const Surroundings& surroundings);
 /// (Tree::origin), as all positions of a tree are.
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
 
-/// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else its
-/// lowest point.
+/// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else the
+/// lowest bark at the foot of its stems (twigs may hang lower), without wood its lowest point.
 float foot_height(const Tree& tree);
 
 /// Takes out the lights that the ground hides from everything above it: distant ones wholly below the horizon, points

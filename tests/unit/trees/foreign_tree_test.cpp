@@ -10,7 +10,9 @@
 #include "trees/patches.h"
 #include "trees/surface_patches.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
+#include <tuple>
 
 namespace kokage {
 namespace {
@@ -310,6 +312,56 @@ TEST(ForeignTree, EveryRealTreeLoads) {
         for (const int count : of_order)
             EXPECT_GT(count, 0) << e.file;
     }
+}
+
+// ez-tree gives every branch of a tree the same number of leaves, and lets a branch begin on its parent's axis: what it
+// knows of its trees is found again without its telling.
+TEST(ForeignTree, EzTreesBranchesBearTheirLeavesAgain) {
+    const auto data = data_folder();
+    if (!data)
+        GTEST_SKIP() << "skipped: KOKAGE_DATA is not set";
+    for (const auto& [file, branches, leaves] : {std::tuple{"eztree_oak_medium.glb", 140u, 38u},
+                                                 {"eztree_ash_large.glb", 220u, 22u},
+                                                 {"eztree_bush_1.glb", 96u, 26u}}) {
+        const Tree tree = read_tree(*data / "trees" / file);
+        ASSERT_EQ(tree.skeleton.branches.size(), branches) << file;
+        std::vector<std::uint32_t> borne(branches, 0);
+        for (const Leaf& leaf : tree.leaves)
+            ++borne[std::size_t(leaf.branch)];
+        const auto right = std::count(borne.begin(), borne.end(), leaves);
+        EXPECT_GE(double(right), 0.9 * double(branches)) << file;
+        EXPECT_EQ(std::count_if(tree.skeleton.branches.begin(), tree.skeleton.branches.end(),
+                                [](const Branch& branch) { return branch.parent < 0; }),
+                  1)
+            << file;
+    }
+}
+
+TEST(ForeignTree, StonesAreNoBranches) {
+    GltfText file = small_tree_file();
+    // Two cubes beside the trunk, of the trunk's material.
+    std::vector<float> positions;
+    std::vector<std::uint16_t> indices;
+    for (const float x : {1.5f, -1.5f}) {
+        const auto first = std::uint16_t(positions.size() / 3);
+        for (int corner = 0; corner < 8; ++corner)
+            positions.insert(positions.end(),
+                             {x + 0.5f * float(corner & 1), 0.5f * float(corner >> 1 & 1), 0.5f * float(corner >> 2)});
+        for (const int v : {0, 2, 1, 1, 2, 3, 4, 5, 6, 5, 7, 6, 0, 1, 4, 1, 5, 4,
+                            2, 6, 3, 3, 6, 7, 0, 4, 2, 2, 4, 6, 1, 3, 5, 3, 7, 5})
+            indices.push_back(std::uint16_t(first + v));
+    }
+    const Tree without = load(file);
+    const int position = file.positions(positions), index = file.indices(indices);
+    const int mesh =
+        file.mesh({{"attributes", {{"POSITION", position}}}, {"indices", index}, {"material", 0}}, "stones");
+    file.node({{"mesh", mesh}});
+    const Tree with = load(file);
+    EXPECT_EQ(with.skeleton.branches.size(), without.skeleton.branches.size());
+    EXPECT_GT(with.bark_patch_count, without.bark_patch_count) << "they take part in the light";
+    EXPECT_TRUE(std::any_of(with.notes.begin(), with.notes.end(), [](const std::string& note) {
+        return note.find("2 pieces of bark too stout") != std::string::npos;
+    }));
 }
 
 } // namespace

@@ -1,6 +1,8 @@
 // `kokage describe`, and how a tree is named on the command line.
+#include "common/scene/image_file.h"
 #include "tests/support/program_run.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace kokage {
@@ -29,6 +31,32 @@ TEST(Describe, JsonSaysTheSame) {
     EXPECT_EQ(json["surfaces"].size(), 3u); // bark of limbs, leaves, bark of twigs
 }
 
+TEST(Describe, DrawsWhatItFound) {
+    TemporaryFolder folder;
+    const ProgramRun run =
+        run_kokage({"describe", "oak", "--leaves", "300", "--image", "found.png", "--maps", "7"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("0 brown, 1 red, 2 orange"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("7 light maps"), std::string::npos) << run.output;
+    const Image image = load_image(folder / "found.png");
+    ASSERT_EQ(image.width, 2 * image.height);
+    // Both panels show colours on white: leaves by branch on the left, wood by generation on the right.
+    for (const int from : {0, image.height}) {
+        std::size_t white = 0, colored = 0;
+        for (int y = 0; y < image.height; ++y)
+            for (int x = from; x < from + image.height; ++x) {
+                const float* pixel = image.at(x, y);
+                const float high = std::max({pixel[0], pixel[1], pixel[2]}),
+                            low = std::min({pixel[0], pixel[1], pixel[2]});
+                white += low > 0.99f;
+                colored += high - low > 0.2f;
+            }
+        EXPECT_GT(white, std::size_t(image.height * image.height) / 4);
+        EXPECT_GT(colored, std::size_t(image.height * image.height) / 200);
+    }
+    EXPECT_EQ(folder.files().size(), 1u);
+}
+
 TEST(Describe, WrongTreesAreRefusedInOneLine) {
     TemporaryFolder folder;
     std::ofstream(folder / "not a tree.glb") << "nothing of the kind";
@@ -48,6 +76,9 @@ TEST(Describe, WrongTreesAreRefusedInOneLine) {
         {{"describe", "not a tree.glb", "--scale", "0"}, "--scale"},
         {{"describe", "not a tree.glb", "--leaf-size", "-1"}, "--leaf-size"},
         {{"describe", "oak", "--threads", "-1"}, "--threads"},
+        {{"describe", "oak", "--image", "found.jpg"}, ".png"},
+        {{"describe", "oak", "--image", "no folder/found.png"}, "no folder"},
+        {{"describe", "oak", "--maps", "0"}, "--maps"},
     };
     for (const auto& [words, hint] : wrongs) {
         const ProgramRun run = run_kokage(words, folder.path());
