@@ -27,6 +27,7 @@ bool holds_any(const std::string& name, const std::array<const char*, N>& words)
 constexpr std::array kFoliageWords = {"leaf",  "leav",   "foliage", "needle", "blossom", "petal", "flower", "frond",
                                       "crown", "canopy", "folha",   "blatt",  "feuille", "grass", "fern"};
 constexpr std::array kWoodWords = {"bark", "wood", "trunk", "branch", "stem", "twig", "root", "log", "stump", "brown"};
+constexpr std::array kObjectWords = {"pot", "vase", "soil", "dirt", "stone", "rock", "pebble", "ground", "planter"};
 constexpr std::array kColorWords = {"green", "autumn", "fall"};
 
 std::string display_name(const SceneMaterial& material, int index) {
@@ -107,6 +108,9 @@ Verdict judge_by_color(MeshScene& scene, const std::vector<std::size_t>& meshes,
 
 bool names_wood(const std::string& name) {
     return holds_any(name, kWoodWords);
+}
+bool names_object(const std::string& name) {
+    return holds_any(name, kObjectWords) && !names_wood(name) && !names_foliage(name);
 }
 bool names_foliage(const std::string& name) {
     return holds_any(name, kFoliageWords) || (holds_any(name, kColorWords) && !names_wood(name));

@@ -18,5 +18,7 @@ FoundFoliage find_foliage(MeshScene& scene, const std::vector<std::string>& name
 /// True if a name speaks of leaves ("leaves", "Needles_02", "DarkGreen"), or of wood ("bark", "Trunk", "woodBirch").
 bool names_foliage(const std::string& name);
 bool names_wood(const std::string& name);
+/// True if it speaks of what stands with a plant and is no part of it ("pot", "soil", "rocks").
+bool names_object(const std::string& name);
 
 } // namespace kokage

@@ -285,13 +285,21 @@ Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions
     for (PartBuilder& builder : parts)
         tree.parts.push_back(builder.part);
     tree.leaves = leaf_centres(tree, leaf_count);
+    std::set<std::string> objects;
     for (const SceneMesh& mesh : bark) {
         part_index(mesh.material, TreePartKind::bark);
+        const std::string& material = scene.materials[std::size_t(mesh.material)].name;
+        if (names_object(material)) { // it takes part in the light, but no branch begins in it
+            objects.insert(material);
+            continue;
+        }
         TreePart whole;
         whole.positions = mesh.positions;
         whole.triangles = mesh.triangles;
         tree.parts.push_back(std::move(whole));
     }
+    for (const std::string& material : objects)
+        tree.notes.push_back("material '" + material + "' is no wood: its name");
     progress.begin("finding branches", 1);
     infer_branching(tree);
     progress.throw_if_stopped();
