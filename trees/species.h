@@ -16,7 +16,7 @@ namespace kokage {
 ///       "latin_name": "Quercus robur",
 ///       "summary": "one line for lists",
 ///       "sources": ["where the figures come from"],
-///       "parameters": {"height_to_width": 0.84}      <- those that differ from the defaults
+///       "parameters": {"height_to_width": 0.88}      <- those that differ from the defaults
 ///     }
 struct Species {
     std::string name, latin_name, summary;
