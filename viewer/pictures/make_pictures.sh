@@ -31,16 +31,15 @@ environment_source() {
 "$program" shade oak --image "$work/oak.png" --image-size 1280x800 --samples 48
 oiiotool "$work/oak.png" --compression jpeg:88 -o "$here/oak.jpg"
 
-# The ten species, in leaf and bare, side by side.
-species=(oak beech birch maple willow aspen pine spruce cypress cherry)
-leafy=() bare=()
-for name in "${species[@]}"; do
-    "$program" shade "$name" --quiet --error 0.1 --image "$work/$name.png" --image-size 360x360 --samples "$samples"
-    "$program" shade "$name" --quiet --error 0.1 --set season=winter --image "$work/$name-bare.png" --image-size 360x360 --samples "$samples"
-    leafy+=("$work/$name.png") bare+=("$work/$name-bare.png")
-    echo "made: $name"
+# The ten species in summer, those that shed their leaves bare, and three in their best season.
+sheet=()
+for tile in {oak,beech,birch,maple,willow,aspen,pine,spruce,cypress,cherry}:summer {oak,beech,birch,maple,willow,aspen,cherry}:winter \
+    cherry:blossom maple:autumn oak:autumn; do
+    "$program" shade "${tile%:*}" --quiet --error 0.1 --set "season=${tile#*:}" --image "$work/$tile.png" --image-size 360x360 --samples "$samples"
+    sheet+=("$work/$tile.png")
+    echo "made: $tile"
 done
-oiiotool "${leafy[@]:0:5}" "${bare[@]:0:5}" "${leafy[@]:5}" "${bare[@]:5}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
+oiiotool "${sheet[@]}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
 
 tiles=() rows=0 columns=0
 for environment in "${environments[@]}"; do
