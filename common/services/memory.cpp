@@ -10,7 +10,7 @@ namespace kokage {
 
 void keep_freed_memory() {
 #ifdef __GLIBC__
-    mallopt(M_MMAP_THRESHOLD, 1 << 25); // the most that it takes
+    mallopt(M_MMAP_MAX, 0); // blocks of their own would be given back, however large the threshold may be set
     mallopt(M_TRIM_THRESHOLD, 1 << 30);
     mallopt(M_TOP_PAD, 1 << 26);
 #endif
