@@ -67,7 +67,7 @@ Command describe_command(CLI::App& program) {
         program.add_subcommand("describe", "What is found in a tree: foliage, leaves, branching, sizes, colours");
     app->footer("\nExample: kokage describe tree.glb");
     app->add_option("TREE", options->source.name,
-                    "A tree's file (.glb, .gltf), or a species or species file (.json) to grow")
+                    "A tree's file (.glb, .gltf, .obj), or a species or species file (.json) to grow")
         ->type_name("NAME")
         ->required();
     add_growing_options(*app, options->source);

@@ -212,7 +212,8 @@ void find_in_data(ShadeOptions& o) {
 } // namespace
 
 void add_shade_options(CLI::App& app, ShadeOptions& o) {
-    app.add_option("TREE", o.tree.name, "A species or species file (.json) to grow, or a tree's file (.glb, .gltf)")
+    app.add_option("TREE", o.tree.name,
+                   "A species or species file (.json) to grow, or a tree's file (.glb, .gltf, .obj)")
         ->type_name("NAME")
         ->capture_default_str();
     app.add_option("--data", o.data,

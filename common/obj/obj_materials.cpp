@@ -193,7 +193,8 @@ void ObjMaterials::read_library(const std::string& names) {
     }
     if (!found)
         notes_.push_back("its material file '" + shown_name(trimmed(names)) +
-                         "' is not there: plain colours stand in for its materials; put it beside the file");
+                         "' is not there: plain colours stand in for its materials, and cards of leaves are solid; put "
+                         "it beside the file");
 }
 
 void ObjMaterials::read_file(const fs::path& file) {
