@@ -132,6 +132,19 @@ void check_header(const OIIO::ImageSpec& spec, const std::string& name, std::uin
                                "; shrink it first");
 }
 
+/// Deflate packs at most 1032 bytes into one (zlib's manual), and a byte holds at most 8 pixels; JPEG stays far below.
+/// A header that announces more is damaged, and reading on would take memory and seconds for nothing.
+void check_density(const OIIO::ImageInput& input, const OIIO::ImageSpec& spec, const std::string& name,
+                   std::uint64_t file_bytes) {
+    constexpr std::uint64_t most = 1032 * 8;
+    const std::string_view format = input.format_name();
+    if ((format == "png" || format == "jpeg") &&
+        std::uint64_t(spec.width) * std::uint64_t(spec.height) > most * (file_bytes + 64))
+        fail_to_read(name, "it is damaged: it announces " + std::to_string(spec.width) + " x " +
+                               std::to_string(spec.height) + " pixels, more than its " + std::to_string(file_bytes) +
+                               " bytes can hold");
+}
+
 /// An EXR may hold a part of its frame, or more than it: cut and pad to the frame.
 Image to_frame(Image image, const OIIO::ImageSpec& spec) {
     const int width = std::max(spec.full_width, 1), height = std::max(spec.full_height, 1);
@@ -147,9 +160,10 @@ Image to_frame(Image image, const OIIO::ImageSpec& spec) {
     return frame;
 }
 
-Image read(Input input, const std::string& name, const ImageLoading& loading) {
+Image read(Input input, const std::string& name, std::uint64_t file_bytes, const ImageLoading& loading) {
     const OIIO::ImageSpec spec = input->spec();
     check_header(spec, name, loading.max_pixels);
+    check_density(*input, spec, name, file_bytes);
     const ChannelChoice choice = choose_channels(spec);
     const int first = *std::min_element(choice.source.begin(), choice.source.begin() + choice.count);
     const int last = *std::max_element(choice.source.begin(), choice.source.begin() + choice.count) + 1;
@@ -231,7 +245,10 @@ std::string image_format(std::span<const std::byte> bytes) {
 }
 
 Image load_image(const std::filesystem::path& path, const ImageLoading& loading) {
-    return read(open(path), path.string(), loading);
+    Input input = open(path);
+    std::error_code ignored;
+    const std::uintmax_t size = std::filesystem::file_size(path, ignored);
+    return read(std::move(input), path.string(), ignored ? std::uint64_t(1) << 40 : std::uint64_t(size), loading);
 }
 
 Image load_image(std::span<const std::byte> bytes, const std::string& name, const ImageLoading& loading) {
@@ -249,7 +266,7 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name, cons
     Input input = OIIO::ImageInput::open("memory." + format, &config, proxy);
     if (!input)
         fail_to_read(name, one_line(OIIO::geterror(), kUnreadable));
-    return read(std::move(input), name, loading);
+    return read(std::move(input), name, bytes.size(), loading);
 }
 
 ImageHeader image_header(const std::filesystem::path& path) {

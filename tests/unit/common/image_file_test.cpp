@@ -173,6 +173,25 @@ TEST_F(ImageFileTest, RefusesTooLargeImagesByTheirHeader) {
     EXPECT_NO_THROW(load_image(folder / "a.exr", {.max_pixels = 100}));
 }
 
+TEST_F(ImageFileTest, RefusesPngsThatAnnounceMoreThanTheyCanHold) {
+    std::vector<std::byte> png = encode_png(gradient(8, 8, 3));
+    png[18] = std::byte(0x20);              // 8,200 wide
+    png[22] = std::byte(0x1f);              // 7,944 high
+    const std::uint32_t check = 0x5c674a2c; // the CRC of the changed header (RFC 2083)
+    for (std::size_t i = 0; i < 4; ++i)
+        png[29 + i] = std::byte(check >> (24 - 8 * i) & 255);
+    try {
+        load_image(png, "small");
+        FAIL() << "65 million pixels were read from a few bytes";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("8200 x 7944 pixels, more than its"), std::string::npos)
+            << error.what();
+    }
+    // A plain image packs best of all: it is read.
+    const Image plain(2048, 2048, 1);
+    EXPECT_EQ(load_image(encode_png(plain), "plain").width, 2048);
+}
+
 TEST_F(ImageFileTest, RefusesWhatIsNoImage) {
     EXPECT_THROW(load_image(folder / "missing.png"), InputError);
     EXPECT_THROW(load_image(folder), InputError);
