@@ -55,6 +55,13 @@ LeafPlace place_leaf(const Branch& branch, const Shoot& shoot, std::uint32_t j, 
     const glm::vec3 standing = unit_or(out + 0.2f * away + glm::vec3(0, -0.12f, 0), out);
     const float hang = float(p.leaf_hang);
     leaf.along = unit_or((1 - hang) * standing + hang * glm::vec3(0, -1, 0), standing);
+    // Leaves that hang near the ground lie on it.
+    const float reach = float(p.leaf_length * (1 + p.leaf_length_spread) * (1 + p.petiole_length));
+    if (leaf.foot.y >= 0 && leaf.foot.y + reach * leaf.along.y < 0) {
+        const float down = -leaf.foot.y / reach;
+        const glm::vec3 sideways = unit_or({leaf.along.x, 0, leaf.along.z}, unit_or({away.x, 0, away.z}, {1, 0, 0}));
+        leaf.along = glm::vec3(0, down, 0) + std::sqrt(1 - down * down) * sideways;
+    }
     // The upper side turns to the light: up, and out of the crown.
     const glm::vec3 light =
         float(p.leaf_up) * (glm::vec3(0, 0.75f, 0) + 0.45f * away) + 0.35f * axis + 0.55f * random_direction(random);

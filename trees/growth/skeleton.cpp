@@ -71,6 +71,8 @@ class SkeletonBuilder {
         for (int pass = 0; pass < 2; ++pass)
             smooth();
         sag();
+        for (WoodNode& node : nodes_) // wood that would grow into the ground creeps along it
+            node.position = above_ground(node.position);
     }
 
     GrownSkeleton build() {
@@ -266,6 +268,10 @@ class SkeletonBuilder {
         return 2.39996323f * float(k) + 1.3f * float(node);
     }
 
+    glm::vec3 above_ground(const glm::vec3& position) const {
+        return {position.x, position.y < 0 ? 0.003f * height_m_ : position.y, position.z};
+    }
+
     /// Appends the nodes of a shoot that runs from the last node of `branch`, bending upwards a little, or hanging.
     void grow_shoot(Branch& branch, glm::vec3 direction, std::uint64_t key) {
         Random random(p_.seed, streams::of(streams::shoot, key + (1ull << 40)));
@@ -288,7 +294,7 @@ class SkeletonBuilder {
             for (int i = 0; i < 2; ++i) {
                 direction = unit_or(direction + 0.2f * random_direction(random) + glm::vec3(0, float(p_.shoot_up), 0),
                                     direction);
-                position += 0.5f * length * direction;
+                position = above_ground(position + 0.5f * length * direction);
                 branch.nodes.push_back({position, radius_m * (i == 0 ? 0.85f : 0.5f)});
             }
         }

@@ -343,6 +343,24 @@ TEST(Phyllotaxis, OppositeLeavesShareTheirNodeOnTheTree) {
     EXPECT_GT(paired, 300u);
 }
 
+TEST(Leaves, AndWoodStayAboveTheGround) {
+    for (const Species& species : all_species())
+        for (const int leaves : {10, 60, 500, 4000}) {
+            GrowthParameters p = species.parameters;
+            p.leaves = leaves;
+            const Tree tree = grow(p);
+            float wood = 0, lowest = 0;
+            for (const Branch& branch : tree.skeleton.branches)
+                for (const Branch::Node& node : branch.nodes)
+                    wood = std::min(wood, node.position.y);
+            for (const glm::vec3& position : tree.parts[1].positions)
+                lowest = std::min(lowest, position.y);
+            EXPECT_EQ(wood, 0.f) << species.name << ", " << leaves << " leaves";
+            // Leaves lie on the ground by their midrib: their sides may dip into it.
+            EXPECT_GT(lowest, -0.4 * p.leaf_length) << species.name << ", " << leaves << " leaves";
+        }
+}
+
 TEST(LeafOptics, ConserveEnergyAndAreOrderedAsMeasured) {
     for (std::size_t k = 0; k < leaf_kind_names().size(); ++k)
         for (const Season season : {Season::spring, Season::summer, Season::autumn, Season::winter, Season::blossom}) {
