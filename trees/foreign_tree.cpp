@@ -142,12 +142,12 @@ float mean_leaf_radius(const Tree& tree) {
     return tree.leaves.empty() ? 0.f : float(std::sqrt(area / double(tree.leaves.size()) / kPiDouble));
 }
 
-/// Bark patches: about as long as the wood is thick around, but no smaller than half a leaf, and turning by at most 45
-/// degrees, except on twigs, which a ring fits.
+/// Bark patches: about as long as the wood is thick around, but no smaller than a quarter of a leaf across, and turning
+/// by at most 45 degrees, except on twigs, which a ring fits.
 void cut_bark(Tree& tree, std::vector<SceneMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
               std::vector<PartBuilder>& parts, float crown) {
     const NearestAxis nearest_axis(tree.skeleton);
-    const float least = std::max(0.005f * crown, 0.5f * mean_leaf_radius(tree));
+    const float least = std::max(0.005f * crown, 0.25f * mean_leaf_radius(tree));
     SurfacePatchLimits limits;
     limits.max_turn = 0.7854f;
     limits.keep_cards = false;
