@@ -439,6 +439,12 @@ std::optional<OwnTree> read_own_tree(const GltfDocument& document, std::string& 
     for (const nlohmann::json& part : parts)
         if (!read_part(reader, part, scene, own))
             return std::nullopt;
+    // Memory is taken for each patch, and each has triangles.
+    std::size_t triangles = 0;
+    for (const TreePart& part : own.tree.parts)
+        triangles += part.triangles.size();
+    if (own.tree.bark_patch_count > triangles)
+        return std::nullopt;
     if (reader.text(extras, "fingerprint") != fingerprint_of(arrays, own.tree) || !reader.good)
         return std::nullopt;
     if (const auto shaded = extras.find("shaded"); shaded != extras.end() && shaded->is_object()) {

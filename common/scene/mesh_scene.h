@@ -59,8 +59,8 @@ struct SceneMesh {
     std::map<std::string, int> custom_attributes;
 };
 
-/// The most vertices, and the most triangles, of a scene, what is repeated counted each time: readers refuse more before
-/// they take memory for it. (A tree of a million leaves has a few million.)
+/// The most vertices, and the most triangles, of a scene, what is repeated counted each time: readers refuse more
+/// before they take memory for it. (A tree of a million leaves has a few million.)
 inline constexpr std::size_t kMaximumSceneVertices = std::size_t(1) << 25;
 inline constexpr std::size_t kMaximumSceneTriangles = std::size_t(1) << 25;
 
