@@ -52,7 +52,8 @@ std::string TreeSource::stem() const {
 }
 
 void add_growing_options(CLI::App& app, TreeSource& source) {
-    app.add_option("--leaves", source.leaves, "Grown trees: number of leaves (otherwise 30000)")
+    app.add_option("--leaves", source.leaves,
+                   "Grown trees: number of leaves (otherwise the species' own: 30000 for an oak)")
         ->type_name("N")
         ->group("Tree");
     app.add_option("--set", source.settings,
