@@ -1,6 +1,7 @@
 #include "trees/describe.h"
 
 #include "common/services/count_text.h"
+#include "common/services/named_file.h"
 #include "trees/find_branching.h"
 
 #include <algorithm>
@@ -119,8 +120,10 @@ void doubt_size_and_axis(const Tree& tree, TreeDescription& d) {
     const glm::vec3 way = trunk->nodes.back().position - trunk->nodes.front().position;
     const float length = glm::length(way);
     if (length > 0 && std::abs(way.y) < 0.3f * length)
-        d.notes.push_back(std::string("its trunk lies along the ") + (std::abs(way.x) > std::abs(way.z) ? "x" : "z") +
-                          " axis: in glTF +Y is up; turn it in the program that it comes from");
+        d.notes.push_back(
+            std::string("its trunk lies along the ") + (std::abs(way.x) > std::abs(way.z) ? "x" : "z") +
+            " axis, while +Y is up" +
+            (way.z > std::abs(way.x) ? ": --up z sets it upright" : "; turn it in the program that it comes from"));
 }
 
 /// Shortest decimal that reads back as the same float: 0.1, not 0.10000000149.
@@ -162,7 +165,7 @@ TreeDescription describe(const Tree& tree) {
 
 std::string text_of(const TreeDescription& d) {
     const glm::dvec3 size = d.high - d.low;
-    std::string text = "tree         " + d.name + " (" + d.source + ")\n";
+    std::string text = "tree         " + shown_name(d.name) + " (" + without_controls(d.source) + ")\n";
     text += "size         " + length_text(size.y) + " high, " + length_text(size.x) + " x " + length_text(size.z) +
             " wide; crown radius " + length_text(d.crown_radius_m) + "; lowest point at height " +
             formatted("%.4g m", d.low.y) + "\n";
@@ -196,7 +199,7 @@ std::string text_of(const TreeDescription& d) {
         text += "  of no branch: " + counted(d.leaves_without_branch, "leaf", "leaves") + "\n";
     for (const TreeDescription::Surface& s : d.surfaces) {
         const bool leaf = s.kind == TreePartKind::foliage;
-        text += std::string(leaf ? "foliage" : "bark   ") + "      '" + s.material +
+        text += std::string(leaf ? "foliage" : "bark   ") + "      '" + shown_name(s.material) +
                 "': " + counted(s.triangles, "triangle", "triangles") + (s.textured ? ", textured" : "") +
                 (s.masked ? ", alpha mask" : "") + "; reflectance " + color_text(s.optics.reflectance);
         if (leaf)
@@ -207,7 +210,7 @@ std::string text_of(const TreeDescription& d) {
     if (d.was_shaded)
         text += "light        shaded already: the file holds the light on every leaf\n";
     for (const std::string& note : d.notes)
-        text += "note         " + note + "\n";
+        text += "note         " + without_controls(note) + "\n";
     return text;
 }
 

@@ -3,6 +3,7 @@
 #include "common/geometry/triangle_topology.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/axis_samples.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
@@ -189,7 +190,7 @@ TreeMaterial tree_material(const SceneMaterial& source, const glm::vec3& color_f
     }
     if (material.alpha_texture && source.base_color.a < 1 && source.base_color.a > 0)
         material.alpha_cutoff /= source.base_color.a;
-    const std::string name = "material '" + source.name + "'";
+    const std::string name = "material '" + shown_name(source.name) + "'";
     if (source.alpha_mode == AlphaMode::mask && !material.alpha_texture)
         notes.push_back(name + " has an alpha mask, but no texture with alpha: it is solid");
     if (source.alpha_mode == AlphaMode::blend)
@@ -202,7 +203,25 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
     return tree_from_scene(flatten(document, std::nullopt, progress), document.path(), options, progress);
 }
 
+namespace {
+
+/// Where +Z is up, to where +Y is.
+void set_upright(MeshScene& scene) {
+    const auto turned = [](const auto& v) { return std::decay_t<decltype(v)>(v.x, v.z, -v.y); };
+    scene.origin = turned(scene.origin);
+    for (SceneMesh& mesh : scene.meshes) {
+        for (glm::vec3& position : mesh.positions)
+            position = turned(position);
+        for (glm::vec3& normal : mesh.normals)
+            normal = turned(normal);
+    }
+}
+
+} // namespace
+
 Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions& options, Progress& progress) {
+    if (options.z_is_up)
+        set_upright(scene);
     Tree tree;
     tree.name = std::filesystem::path(path).stem().string();
     tree.source = path;
@@ -272,6 +291,10 @@ Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions
     for (std::size_t m = 0; m < foliage.size(); ++m)
         parts[part_index(foliage[m].material, TreePartKind::foliage)].append(foliage[m], leaves.leaf_of[m], 0);
     const std::uint32_t leaf_count = leaves.count;
+    if (options.leaf_size > 0 && options.leaf_size < 1e-3f * crown)
+        tree.notes.push_back("the leaf size, " + metres_text(options.leaf_size) +
+                             ", is less than a thousandth of the " + "crown's radius of " + metres_text(crown) +
+                             ": foliage falls apart into its triangles if that is not what leaves measure");
     if (leaf_count == 0)
         tree.notes.push_back("no foliage was found: say which material or mesh it is");
     else
@@ -299,7 +322,7 @@ Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions
         tree.parts.push_back(std::move(whole));
     }
     for (const std::string& material : objects)
-        tree.notes.push_back("material '" + material + "' is no wood: its name");
+        tree.notes.push_back("material '" + shown_name(material) + "' is no wood: its name");
     progress.begin("finding branches", 1);
     infer_branching(tree);
     progress.throw_if_stopped();

@@ -58,7 +58,7 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
     const GltfDocument document = GltfDocument::read(path, progress);
     const bool shaded = holds_light(document);
     std::string why;
-    if (options.foliage_materials.empty() && options.leaf_size == 0) {
+    if (options.foliage_materials.empty() && options.leaf_size == 0 && !options.z_is_up) {
         if (std::optional<OwnTree> own = read_own_tree(document, why, progress)) {
             if (options.scale != 1)
                 scale_tree(own->tree, options.scale);

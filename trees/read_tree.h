@@ -16,6 +16,8 @@ struct ReadOptions {
     float leaf_size = 0;
     /// The file's unit in metres: positions are multiplied by it.
     double scale = 1;
+    /// The file's +Z is up, as that of some OBJ files is, rather than +Y: the tree is turned about X.
+    bool z_is_up = false;
 };
 
 /// Reads a .glb, .gltf or .obj. A file written by write_tree() gives back the same tree, bit for bit (with `options` at

@@ -73,11 +73,12 @@ void grow_and_write(GrowOptions options, const CommandContext& context) {
     if (!options.seeds.empty()) {
         if (options.seed)
             throw InputError("--seed and --seeds contradict one another; leave one of them out");
+        const SeedRange seeds = seeds_from(options.seeds);
         if (lower_ending(options.output) == ".glb")
             throw InputError("--seeds: many trees need a folder; give -o FOLDER, not '" + options.output.string() +
                              "'");
         return grow_variants(
-            options.source, seeds_from(options.seeds),
+            options.source, seeds,
             options.output.empty() ? std::filesystem::path(options.source.stem() + "-trees") : options.output, context);
     }
     if (options.output.empty())

@@ -163,13 +163,22 @@ void grow_variants(const TreeSource& source, const SeedRange& seeds, const fs::p
     std::uint64_t kept = 0;
     OnlyStops within_a_tree(*context.progress);
     context.progress->begin("growing " + species.name, std::size_t(count));
-    for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
-        context.progress->throw_if_stopped();
-        if (manifest.has(seed))
-            ++kept;
-        else
-            manifest.add(seed, grow_one(species.parameters, seed, folder, within_a_tree));
-        context.progress->advance(1);
+    try {
+        for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed) {
+            context.progress->throw_if_stopped();
+            if (manifest.has(seed))
+                ++kept;
+            else
+                manifest.add(seed, grow_one(species.parameters, seed, folder, within_a_tree));
+            context.progress->advance(1);
+        }
+    } catch (const Stopped&) {
+        std::uint64_t there = 0;
+        for (std::uint64_t seed = seeds.first; seed <= seeds.last; ++seed)
+            there += manifest.has(seed);
+        throw StoppedBetweenFiles(count_text(there) + " of " + counted(count, "tree", "trees") +
+                                  (there == 1 ? " is in '" : " are in '") + folder.string() +
+                                  "'; the same command goes on");
     }
     context.progress->clear();
     if (!context.quiet)

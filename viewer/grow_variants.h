@@ -21,7 +21,7 @@ SeedRange seeds_from(std::string_view text);
 /// triangles, height_m, width_m, bytes} in order of seeds. The manifest is written anew after every tree, each file
 /// whole or not at all: what was grown when the run stops stays, and the same command goes on where it stopped. Trees
 /// that the manifest lists, and whose files are as long as it says, are kept; so are those of other seeds. Throws
-/// InputError if the folder holds variants of other parameters or another program's version.
+/// InputError if the folder holds variants of other parameters or another program's version, StoppedBetweenFiles.
 void grow_variants(const TreeSource& source, const SeedRange& seeds, const std::filesystem::path& folder,
                    const CommandContext& context);
 

@@ -76,6 +76,9 @@ int run_command(const Command& command, bool quiet, int threads) {
         command.run({.quiet = quiet, .threads = threads, .progress = &progress});
         std::cout.flush();
         return std::cout ? 0 : complain("the output could not be written (is the disk full?)", kInternalError);
+    } catch (const StoppedBetweenFiles& stopped) {
+        progress.clear();
+        return complain("stopped; " + stopped.kept, kStopped);
     } catch (const Stopped&) {
         progress.clear();
         return complain("stopped; nothing was written", kStopped);

@@ -1,8 +1,16 @@
 #pragma once
 // Ctrl-C (SIGINT), SIGTERM and a closed terminal (SIGHUP) ask the work to stop; it stops at its next look at
 // stop_requested().
+#include "common/services/error.h"
 
 namespace kokage {
+
+/// Stopped after some of many files were written whole; those stay.
+struct StoppedBetweenFiles : Stopped {
+    /// `what_is_kept`: what the user is told after "stopped; ".
+    explicit StoppedBetweenFiles(std::string what_is_kept) : kept(std::move(what_is_kept)) {}
+    std::string kept;
+};
 
 /// From now on the signals set a flag. A second one ends the program at once, unless files are being written.
 void watch_stop_signals();

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <filesystem>
 
@@ -15,6 +16,22 @@ namespace {
 
 bool is_species_file(const std::string& name) {
     return lower_ending(name) == ".json";
+}
+
+/// What doesn't fit an int; set_parameter() judges the others.
+CLI::Validator number_of_leaves() {
+    return CLI::Validator(
+        [](std::string& text) {
+            int number = 0;
+            const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+            if (error == std::errc() && end == text.data() + text.size())
+                return std::string();
+            for (const ParameterDescription& p : parameter_descriptions({}))
+                if (p.name == "leaves")
+                    return "'" + text + "' is out of range; it takes " + range_text(p);
+            return "'" + text + "' is not a number";
+        },
+        "");
 }
 
 } // namespace
@@ -54,6 +71,7 @@ std::string TreeSource::stem() const {
 void add_growing_options(CLI::App& app, TreeSource& source) {
     app.add_option("--leaves", source.leaves,
                    "Grown trees: number of leaves (otherwise the species' own: 30000 for an oak)")
+        ->check(number_of_leaves())
         ->type_name("N")
         ->group("Tree");
     app.add_option("--set", source.settings,
@@ -79,12 +97,19 @@ void add_loading_options(CLI::App& app, TreeSource& source) {
     app.add_option("--scale", source.scale, "Files: metres in one unit of the file (0.01 for centimetres)")
         ->type_name("X")
         ->group("Tree");
+    app.add_option(
+           "--up", source.up,
+           "Files: the axis that is up, y as glTF has it or z as 3ds Max and other programs write into OBJ files")
+        ->transform(CLI::IsMember({"y", "z"}, CLI::ignore_case).description(""))
+        ->type_name("y|z")
+        ->capture_default_str()
+        ->group("Tree");
 }
 
 void check_tree_source(const TreeSource& source) {
     if (source.is_species()) {
-        if (!source.foliage.empty() || source.leaf_size != 0 || source.scale != 1)
-            throw InputError("--foliage, --leaf-size and --scale are for files; '" + source.name + "' is grown");
+        if (!source.foliage.empty() || source.leaf_size != 0 || source.scale != 1 || source.up != "y")
+            throw InputError("--foliage, --leaf-size, --scale and --up are for files; '" + source.name + "' is grown");
         asked_species(source);
         return;
     }
@@ -109,7 +134,10 @@ Tree obtain_tree(const TreeSource& source, Progress& progress) {
     if (source.is_species())
         return grow(asked_species(source).parameters, progress);
     return read_tree(source.name,
-                     {.foliage_materials = source.foliage, .leaf_size = float(source.leaf_size), .scale = source.scale},
+                     {.foliage_materials = source.foliage,
+                      .leaf_size = float(source.leaf_size),
+                      .scale = source.scale,
+                      .z_is_up = source.up == "z"},
                      progress);
 }
 

@@ -19,6 +19,7 @@ struct TreeSource {
     std::vector<std::string> foliage;  ///< files: names of foliage materials; empty = found out
     double leaf_size = 0;              ///< files: metres; 0 = found out
     double scale = 1;                  ///< files: metres per unit
+    std::string up = "y";              ///< files: "y" or "z", the axis that is up
 
     /// True if `name` is to be grown rather than loaded: a species' name always is, and so is a species file.
     bool is_species() const;
@@ -30,7 +31,7 @@ struct TreeSource {
 
 /// Options of growing: --leaves, --set.
 void add_growing_options(CLI::App& app, TreeSource& source);
-/// Options of loading: --foliage, --leaf-size, --scale.
+/// Options of loading: --foliage, --leaf-size, --scale, --up.
 void add_loading_options(CLI::App& app, TreeSource& source);
 
 /// Throws InputError, before any work, if a value can't be: an unknown species that is no file either, a parameter out

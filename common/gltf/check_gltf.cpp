@@ -10,6 +10,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tiny_gltf.h>
+#include <utility>
+#include <vector>
 
 namespace kokage {
 namespace {
@@ -31,6 +33,23 @@ constexpr std::array<std::string_view, 31> kUnderstood = {
     throw InputError(path + ": " + what);
 }
 
+[[noreturn]] void fail_version(const std::string& path, const std::string& version) {
+    fail(path, "is glTF version " + version +
+                   "; version 2 is needed (gltf-pipeline converts: gltf-pipeline -i old.gltf -o new.glb)");
+}
+
+/// In version 1, meshes and their like are objects by name, and "asset" may be missing.
+void check_version(const nlohmann::json& json, const std::string& path) {
+    std::string version;
+    if (const auto asset = json.find("asset"); asset != json.end() && asset->is_object())
+        if (const auto said = asset->find("version"); said != asset->end() && said->is_string())
+            version = said->get<std::string>().substr(0, 20);
+    const auto meshes = json.find("meshes");
+    if (version.starts_with("0.") || version.starts_with("1.") || version == "1" ||
+        (meshes != json.end() && meshes->is_object()))
+        fail_version(path, version.empty() ? "1" : version);
+}
+
 std::uint32_t little_endian(const unsigned char* bytes) {
     return std::uint32_t(bytes[0]) | std::uint32_t(bytes[1]) << 8 | std::uint32_t(bytes[2]) << 16 |
            std::uint32_t(bytes[3]) << 24;
@@ -45,7 +64,7 @@ std::string_view json_text(std::span<const unsigned char> bytes, const std::stri
     const std::uint32_t version = little_endian(bytes.data() + 4), length = little_endian(bytes.data() + 8);
     const std::uint32_t chunk = little_endian(bytes.data() + 12);
     if (version != 2)
-        fail(path, "is glTF version " + std::to_string(version) + "; version 2 is needed");
+        fail_version(path, std::to_string(version));
     if (length > bytes.size() || std::uint64_t(chunk) + 20 > bytes.size())
         fail(path, "cut off: its header announces " +
                        std::to_string(std::max<std::uint64_t>(length, std::uint64_t(chunk) + 20)) +
@@ -105,6 +124,8 @@ nlohmann::json parse_gltf_json(std::span<const unsigned char> bytes, const std::
             return true;
         };
         nlohmann::json json = nlohmann::json::parse(text.begin(), text.end(), watch_depth);
+        if (json.is_object())
+            check_version(json, path);
         if (!json.is_object() || !json.contains("asset"))
             fail(path, "is not a glTF file: its JSON has no \"asset\"");
         return json;
@@ -125,6 +146,39 @@ void check_required_extensions(const nlohmann::json& json, const std::string& pa
                  "requires the extension " + name + ", which is not understood; export it without that extension");
     }
 }
+
+namespace {
+
+/// From the roots on, without recursion; what this doesn't reach (cycles) and children that don't exist are refused
+/// where nodes are read.
+void check_depth_of_nodes(const nlohmann::json& json, const std::string& path) {
+    const nlohmann::json& nodes = array_of(json, "nodes", path);
+    std::vector<std::int64_t> parent(nodes.size(), -1);
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (nodes[i].is_object() && nodes[i].contains("children"))
+            for (const nlohmann::json& child : nodes[i]["children"])
+                if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size())
+                    parent[child.get<std::size_t>()] = std::int64_t(i);
+    std::vector<std::size_t> level, next;
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+        if (parent[i] < 0)
+            level.push_back(i);
+    for (std::size_t depth = 1; !level.empty(); ++depth) {
+        if (depth > kMaximumNodeDepth)
+            fail(path, "its nodes are nested deeper than the limit of " + std::to_string(kMaximumNodeDepth) +
+                           "; join them in the program that it comes from");
+        next.clear();
+        for (const std::size_t node : level)
+            if (nodes[node].is_object() && nodes[node].contains("children"))
+                for (const nlohmann::json& child : nodes[node]["children"])
+                    if (child.is_number_unsigned() && child.get<std::uint64_t>() < nodes.size() &&
+                        std::exchange(parent[child.get<std::size_t>()], -1) == std::int64_t(node))
+                        next.push_back(child.get<std::size_t>());
+        std::swap(level, next);
+    }
+}
+
+} // namespace
 
 void check_gltf_ranges(const nlohmann::json& json, const std::string& path) {
     std::vector<std::uint64_t> buffer_sizes;
@@ -151,6 +205,17 @@ void check_gltf_ranges(const nlohmann::json& json, const std::string& path) {
         if (length > 0x7fffffffu)
             fail(path, place + ": larger than 2 GB");
     }
+    std::size_t accessor_index = 0;
+    for (const nlohmann::json& accessor : array_of(json, "accessors", path)) {
+        const std::string place = "accessor " + std::to_string(accessor_index++);
+        if (!accessor.is_object())
+            fail(path, place + " is not an object");
+        const auto count = accessor.find("count");
+        if (count == accessor.end() || !count->is_number() || count->get<double>() < 0)
+            fail(path, place + ": \"count\" is " + (count == accessor.end() ? "missing" : count->dump().substr(0, 40)) +
+                           ", not an unsigned integer");
+    }
+    check_depth_of_nodes(json, path);
     std::size_t image_index = 0;
     for (const nlohmann::json& image : array_of(json, "images", path)) {
         const std::string place = "image " + std::to_string(image_index++);

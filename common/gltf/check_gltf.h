@@ -16,7 +16,7 @@ namespace kokage {
 bool is_glb(std::span<const unsigned char> bytes);
 
 /// The JSON of a .glb (its first chunk) or a .gltf. Refuses nesting deeper than 128, which would exhaust the stack of
-/// recursive readers.
+/// recursive readers; and glTF of version 1.
 nlohmann::json parse_gltf_json(std::span<const unsigned char> bytes, const std::string& path);
 
 /// The most elements of an accessor.
@@ -26,10 +26,14 @@ inline constexpr std::size_t kMaximumElements = std::size_t(1) << 27;
 inline constexpr std::size_t kMaximumInstances = std::size_t(1) << 22;
 inline constexpr std::size_t kMaximumMeshes = std::size_t(1) << 20;
 
+/// The most nodes from a root down to a leaf.
+inline constexpr std::size_t kMaximumNodeDepth = 1000;
+
 /// Refuses a required extension that is not understood, by its name.
 void check_required_extensions(const nlohmann::json& json, const std::string& path);
 
-/// Refuses buffers without a length, buffer views that reach beyond their buffer, and images without a place.
+/// Refuses buffers without a length, buffer views that reach beyond their buffer, negative counts of accessors, images
+/// without a place, and nodes deeper than kMaximumNodeDepth.
 /// What it lets pass are arrays of objects with numbers of the right kind.
 void check_gltf_ranges(const nlohmann::json& json, const std::string& path);
 

@@ -3,6 +3,7 @@
 #include "common/gltf/gltf_values.h"
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 
 #include <algorithm>
 #include <cmath>
@@ -29,7 +30,7 @@ class MaterialReader {
         SceneMaterial material;
         material.name = source.name;
         const std::string place =
-            "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + source.name + "'");
+            "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + shown_name(source.name) + "'");
         const auto& pbr = source.pbrMetallicRoughness;
         material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
                               : source.alphaMode == "BLEND" ? AlphaMode::blend

@@ -3,6 +3,7 @@
 #include "common/gltf/check_gltf.h"
 #include "common/gltf/gltf_values.h"
 #include "common/services/count_text.h"
+#include "common/services/named_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -184,7 +185,7 @@ std::vector<int> GltfNodes::roots(std::vector<std::string>& notes) const {
     for (const std::size_t s : filled)
         if (s != chosen)
             notes.push_back("scene " + std::to_string(s) +
-                            (model.scenes[s].name.empty() ? "" : " '" + model.scenes[s].name + "'") +
+                            (model.scenes[s].name.empty() ? "" : " '" + shown_name(model.scenes[s].name) + "'") +
                             " was left out: one scene is read");
     for (const int index : model.scenes[chosen].nodes)
         check_node(index, "scene " + std::to_string(chosen));

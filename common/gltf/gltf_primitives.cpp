@@ -28,6 +28,8 @@ std::vector<glm::uvec3> read_triangles(const GltfDocument& document, const tinyg
         if (indices[i] >= vertices)
             document.fail(place + ": index " + std::to_string(i) + " names vertex " + std::to_string(indices[i]) +
                           " of " + std::to_string(vertices));
+    if (primitive.mode > TINYGLTF_MODE_TRIANGLE_FAN)
+        document.fail(place + ": mode " + std::to_string(primitive.mode) + " is not one of glTF's (0 to 6)");
     std::vector<glm::uvec3> triangles;
     const std::size_t count = indices.size();
     if (primitive.mode == TINYGLTF_MODE_TRIANGLE_STRIP) {

@@ -5,6 +5,7 @@
 #include "common/gltf/gltf_nodes.h"
 #include "common/gltf/gltf_primitives.h"
 #include "common/services/count_text.h"
+#include "common/services/named_file.h"
 
 #include <cmath>
 #include <limits>
@@ -138,7 +139,7 @@ class Flattening {
         const tinygltf::Mesh& mesh = document_.model().meshes[std::size_t(placement.mesh)];
         const tinygltf::Primitive& source = mesh.primitives[std::size_t(p)];
         const std::string place = "mesh " + std::to_string(placement.mesh) +
-                                  (mesh.name.empty() ? "" : " '" + mesh.name + "'") + ", primitive " +
+                                  (mesh.name.empty() ? "" : " '" + shown_name(mesh.name) + "'") + ", primitive " +
                                   std::to_string(p);
         auto [found, is_new] = primitives_.try_emplace({placement.mesh, p});
         if (is_new)

@@ -46,6 +46,10 @@ std::set<std::string> materials_with_color(const std::string& text) {
     return names;
 }
 
+bool lies_between_black_and_white(const tinyobj::material_t& source) {
+    return std::any_of(source.diffuse, source.diffuse + 3, [](float c) { return c > 0 && c < 1; });
+}
+
 /// Nearest texels.
 Image resized(const Image& image, int width, int height) {
     Image result(width, height, image.channels);
@@ -55,6 +59,11 @@ Image resized(const Image& image, int width, int height) {
                 image.at(int(std::int64_t(x) * image.width / width), int(std::int64_t(y) * image.height / height)),
                 image.channels, result.at(x, y));
     return result;
+}
+
+/// The MTL format doesn't say which it is.
+float base_color_of(float kd, bool linear) {
+    return linear ? kd : linear_from_srgb(kd);
 }
 
 float component(float value, float low, float high, float missing) {
@@ -168,6 +177,16 @@ class MaterialTextures {
     fs::path folder_;
 };
 
+bool is_written_by_blender(std::string_view text) {
+    while (!text.empty() && text.front() == '#') {
+        const std::size_t end = std::min(text.find('\n'), text.size());
+        if (text.substr(0, end).find("Blender") != std::string_view::npos)
+            return true;
+        text.remove_prefix(std::min(end + 1, text.size()));
+    }
+    return false;
+}
+
 ObjMaterials::ObjMaterials(fs::path path, std::vector<std::string>& notes) : path_(std::move(path)), notes_(notes) {}
 
 void ObjMaterials::read_library(const std::string& names) {
@@ -209,6 +228,8 @@ void ObjMaterials::read_file(const fs::path& file) {
         throw InputError(file.string() + ": more than the limit of " + std::to_string(kMaximumMaterials) +
                          " materials");
     const std::set<std::string> colored = materials_with_color(text);
+    const bool linear = kd_is_linear_ || is_written_by_blender(text);
+    bool reading_matters = false;
     MaterialTextures textures(*this, file.parent_path());
     for (const tinyobj::material_t& source : sources) {
         const std::string name = trimmed(source.name);
@@ -220,7 +241,8 @@ void ObjMaterials::read_file(const fs::path& file) {
         material.double_sided = true;
         const bool has_color = colored.contains(name);
         for (std::size_t c = 0; c < 3; ++c)
-            material.base_color[c] = has_color ? linear_from_srgb(component(source.diffuse[c], 0, 1, 0.5f)) : 1.f;
+            material.base_color[c] = has_color ? base_color_of(component(source.diffuse[c], 0, 1, 0.5f), linear) : 1.f;
+        reading_matters = reading_matters || (has_color && lies_between_black_and_white(source));
         material.base_color.a = component(source.dissolve, 0, 1, 1);
         if (material.base_color.a < 1)
             material.alpha_mode = AlphaMode::blend;
@@ -237,6 +259,9 @@ void ObjMaterials::read_file(const fs::path& file) {
         materials_.push_back(std::move(material));
         options_.push_back(options);
     }
+    if (reading_matters)
+        notes_.push_back(linear ? "its colours (Kd) are read as linear, as Blender writes them"
+                                : "its colours (Kd) are read as sRGB, as most programs but Blender write them");
 }
 
 int ObjMaterials::index_of(const std::string& name) {

@@ -3,14 +3,21 @@
 #include "common/scene/mesh_scene.h"
 
 #include <filesystem>
+#include <string_view>
 
 namespace kokage {
+
+/// True if the comments at a text's begin say so, as those of Blender's OBJ and MTL files do in all versions.
+bool is_written_by_blender(std::string_view text);
 
 /// Materials by name, read from the MTL files that an OBJ names.
 class ObjMaterials {
   public:
     /// `path`: of the OBJ, for messages.
     ObjMaterials(std::filesystem::path path, std::vector<std::string>& notes);
+
+    /// From now on Kd is linear whatever an MTL says of itself; else it is so where Blender wrote the MTL.
+    void take_kd_as_linear() { kd_is_linear_ = true; }
 
     /// Reads the file or files that a `mtllib` line names; one that is not there is noted.
     void read_library(const std::string& names);
@@ -36,6 +43,7 @@ class ObjMaterials {
     std::map<std::string, int> by_name_;
     std::map<std::string, Image> images_; ///< by path
     std::uint64_t pixels_ = 0;
+    bool kd_is_linear_ = false;
     friend class MaterialTextures;
 };
 

@@ -91,6 +91,8 @@ class ObjReader {
 
     /// Joins lines that end in '\', reads material libraries, and refuses what is no text or has lines without end.
     void read_lines(std::vector<unsigned char>& bytes) {
+        if (is_written_by_blender({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
+            materials_.take_kd_as_linear();
         std::size_t begin = 0, number = 1;
         for (std::size_t i = 0; i <= bytes.size(); ++i) {
             if (i < bytes.size() && bytes[i] == 0)

@@ -11,7 +11,9 @@ namespace kokage {
 /// Polygons of any shape become triangles; negative indices count from the last vertex; missing normals are computed;
 /// texture coordinates are turned to glTF's (v downwards).
 ///
-/// - Kd is read as sRGB, as three.js does, and multiplies map_Kd; without Kd a textured surface is white.
+/// - Kd is linear where the OBJ or its MTL says that Blender wrote it (Blender writes its linear values), else sRGB, as
+///   three.js reads it: the format doesn't say, and other programs write what their colour pickers show. The notes say
+///   which it was where it matters. It multiplies map_Kd; without Kd a textured surface is white.
 /// - map_d, or the alpha of map_Kd where it cuts holes, is a mask at 0.5; `d` below 1 (or `Tr` above 0) is blending.
 /// - Surfaces are double sided, as most OBJ exporters mean them.
 /// - A material file or a colour texture that is not there is said in the notes (SceneMaterial::color_is_lost); a mask

@@ -1,5 +1,7 @@
 #include "common/scene/image_file.h"
+#include "common/scene/png_chunks.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "common/services/output_file.h"
 #include "common/services/parallel.h"
 
@@ -31,6 +33,8 @@ std::string one_line(std::string text, const char* otherwise) {
 }
 constexpr const char* kUnreadable =
     "it is damaged or of an unknown format; .hdr, .exr, .png, .jpg, .tif, .webp, .bmp and .tga can be read";
+constexpr const char* kMending = "; export it, or the file that it belongs to, again";
+constexpr std::uint64_t kMaximumPng = 0xffffffffu;
 constexpr const char* kUnwritable = "the system did not take it (is the disk full?)";
 
 OIIO::ImageSpec straight_alpha_request() {
@@ -173,7 +177,8 @@ Image read(Input input, const std::string& name, std::uint64_t file_bytes, const
         fail_to_read(name, "its colour channels lie among too many others; write them to a file of their own");
     Image image(spec.width, spec.height, last - first);
     if (!input->read_image(0, 0, first, last, OIIO::TypeDesc::FLOAT, image.pixels.data()))
-        fail_to_read(name, one_line(input->geterror(), kUnreadable));
+        fail_to_read(name,
+                     "it is damaged (" + one_line(input->geterror(), "its pixels can't be decoded") + ")" + kMending);
     const bool direct =
         choice.count == last - first && std::is_sorted(choice.source.begin(), choice.source.begin() + choice.count);
     if (!direct) {
@@ -245,6 +250,11 @@ std::string image_format(std::span<const std::byte> bytes) {
 }
 
 Image load_image(const std::filesystem::path& path, const ImageLoading& loading) {
+    std::error_code missing;
+    if (path.extension() == ".png" && std::filesystem::is_regular_file(path, missing)) {
+        const std::vector<unsigned char> bytes = read_file_bytes(path, kMaximumPng);
+        return load_image(std::as_bytes(std::span(bytes)), path.string(), loading);
+    }
     Input input = open(path);
     std::error_code ignored;
     const std::uintmax_t size = std::filesystem::file_size(path, ignored);
@@ -259,6 +269,14 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name, cons
     if (format.empty())
         fail_to_read(name, "its first bytes are of no known format (PNG, JPEG, WebP, EXR, HDR, TIFF, BMP, GIF, DDS)");
     use_our_thread_count();
+    std::vector<std::byte> png;
+    if (format == "png") {
+        std::string why;
+        png = essential_png_chunks(bytes, why);
+        if (png.empty())
+            fail_to_read(name, why + kMending);
+        bytes = png;
+    }
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
     OIIO::ImageSpec config = straight_alpha_request();
     OIIO::Filesystem::IOProxy* proxy = &memory;

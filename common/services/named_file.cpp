@@ -47,14 +47,26 @@ std::string percent_decoded(const std::string& text) {
     return result;
 }
 
+std::string without_controls(std::string text) {
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const auto byte = static_cast<unsigned char>(text[i]);
+        if (byte < 0x20 || byte == 0x7f)
+            text[i] = '?';
+        // U+0080 to U+009F control terminals too.
+        if (byte == 0xc2 && i + 1 < text.size() && static_cast<unsigned char>(text[i + 1]) < 0xa0)
+            text.replace(i, 2, "?");
+    }
+    return text;
+}
+
 std::string shown_name(const std::string& name) {
-    std::string shown = name.substr(0, 80);
-    if (shown.size() < name.size())
-        shown += "...";
-    for (char& c : shown)
-        if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f)
-            c = '?';
-    return shown;
+    constexpr std::size_t most = 80;
+    if (name.size() <= most)
+        return without_controls(name);
+    std::size_t end = most; // not within a character of UTF-8
+    while (end > most - 4 && (static_cast<unsigned char>(name[end]) & 0xc0) == 0x80)
+        --end;
+    return without_controls(name.substr(0, end)) + "...";
 }
 
 namespace {
@@ -125,13 +137,13 @@ fs::path find_named_file(const fs::path& folder, const std::string& name, NameRe
     const fs::path path = search(folder, name, reach, fault);
     if (fault == Fault::none)
         return path;
-    throw InputError(owner + ": names the file '" + shown_name(name) + "'" +
-                     (fault == Fault::no_name ? ", which is no name"
-                      : fault == Fault::absolute
-                          ? ", which is not a name relative to its own folder: put that file beside it and name it so"
-                      : fault == Fault::outside
-                          ? ", which lies outside of its folder: put that file beside it and name it so"
-                          : ", which is not there: put it beside the file"));
+    throw InputError(
+        owner + ": names the file '" + shown_name(fault == Fault::missing ? percent_decoded(name) : name) + "'" +
+        (fault == Fault::no_name ? ", which is no name"
+         : fault == Fault::absolute
+             ? ", which is not a name relative to its own folder: put that file beside it and name it so"
+         : fault == Fault::outside ? ", which lies outside of its folder: put that file beside it and name it so"
+                                   : ", which is not there: put it beside the file"));
 }
 
 } // namespace kokage

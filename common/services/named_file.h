@@ -28,6 +28,8 @@ std::filesystem::path look_for_named_file(const std::filesystem::path& folder, c
 /// Percent escapes decoded; what is no valid escape stays as it is.
 std::string percent_decoded(const std::string& text);
 
+/// Text for a terminal: control characters (line breaks, escapes, U+0080 to U+009F) become '?'.
+std::string without_controls(std::string text);
 /// A name for messages: control characters replaced, long ones shortened.
 std::string shown_name(const std::string& name);
 

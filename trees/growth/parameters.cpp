@@ -20,6 +20,26 @@ std::string number_text(double value) {
                       .ptr};
 }
 
+/// What sets things that artists ask for by other names than ours; empty for other words.
+std::string hint_for(std::string_view name) {
+    const auto is_one_of = [&](std::initializer_list<std::string_view> words) {
+        return std::find(words.begin(), words.end(), name) != words.end();
+    };
+    if (is_one_of({"height", "width", "size", "scale", "radius", "diameter", "spread", "age", "length"}))
+        return "a tree's size follows from its leaves: 'leaves' is their number, 'leaf_length' their size, "
+               "'leaf_area_index' how densely they stand, and 'height_to_width' the tree's shape";
+    if (is_one_of({"trunk", "trunk_radius", "trunk_height", "trunk_length", "trunk_width", "girth", "thickness"}))
+        return "the trunk follows from the tree's size; 'trunk_reach', 'crown_base', 'pipe_exponent' and 'root_flare' "
+               "change it";
+    if (is_one_of({"branches", "levels", "gravity", "angle"}))
+        return "'limbs', 'branch_angle', 'branch_up' and 'light_need' shape the branches";
+    if (is_one_of({"color", "colour", "leaf_colour"}))
+        return "'season', 'leaf_color' and 'bark' set colours";
+    if (is_one_of({"density", "foliage"}))
+        return "'leaf_area_index' and 'leaves_per_shoot' set how densely leaves stand";
+    return "";
+}
+
 const ParameterRow& find_row(std::string_view name) {
     std::vector<std::string> names;
     for (const ParameterRow& row : parameter_table()) {
@@ -27,6 +47,9 @@ const ParameterRow& find_row(std::string_view name) {
             return row;
         names.push_back(row.description.name);
     }
+    if (const std::string hint = hint_for(name); !hint.empty())
+        throw InputError("no growth parameter is called '" + std::string(name) + "': " + hint +
+                         ". 'kokage grow --describe oak' lists all");
     throw InputError("no growth parameter is called '" + std::string(name) + "'; did you mean '" +
                      nearest_word(name, names) + "'? 'kokage grow --describe oak' lists all");
 }

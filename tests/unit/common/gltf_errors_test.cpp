@@ -95,6 +95,15 @@ TEST(GltfErrors, AreOneLineThatNamesTheCause) {
              f.json["nodes"][0]["scale"] = {1e300, 1e300, 1e300};
          },
          ""},
+        {"a negative count", [](GltfText& f) { f.json["accessors"][1]["count"] = -1; }, "accessor 1: \"count\" is -1"},
+        {"a mode that glTF doesn't have", [](GltfText& f) { f.json["meshes"][0]["primitives"][0]["mode"] = 9; },
+         "mode 9"},
+        {"version 1", [](GltfText& f) { f.json["asset"]["version"] = "1.0"; }, "version 1.0; version 2 is needed"},
+        {"objects by name, as version 1 has them",
+         [](GltfText& f) {
+             f.json["meshes"] = {{"tree", {{"primitives", nlohmann::json::array()}}}};
+         },
+         "version 2 is needed"},
         {"no mesh", [](GltfText& f) { f.json["nodes"][0].erase("mesh"); }, "no mesh"},
         {"no asset", [](GltfText& f) { f.json.erase("asset"); }, "asset"},
         {"attributes of different lengths",
@@ -135,6 +144,30 @@ TEST(GltfErrors, DeepNestingIsRefused) {
     text += std::string(200000, '[') + std::string(200000, ']') + "}";
     std::ofstream(folder / "deep.gltf") << text;
     EXPECT_THROW(GltfDocument::read(folder / "deep.gltf"), InputError);
+}
+
+/// A root, and nodes below one another, the mesh in the last.
+GltfText chain(int depth) {
+    GltfText file = good_file();
+    file.json["nodes"] = nlohmann::json::array();
+    for (int i = 1; i < depth; ++i)
+        file.json["nodes"].push_back({{"children", {i}}});
+    file.json["nodes"].push_back({{"mesh", 0}});
+    return file;
+}
+
+TEST(GltfErrors, NodesHaveAMostDepth) {
+    EXPECT_EQ(complaint(chain(1000)), "");
+    EXPECT_NE(complaint(chain(1001)).find("nested deeper than the limit of 1000"), std::string::npos);
+}
+
+TEST(GltfErrors, NamesAreShownOnOneLineOfSomeLength) {
+    GltfText file = good_file();
+    file.json["meshes"][0]["name"] = "\x1b[31mred\n" + std::string(5000, 'x');
+    file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = file.normals({0, 0, 1});
+    const std::string what = complaint(file);
+    EXPECT_NE(what.find("'?[31mred?xxx"), std::string::npos) << what;
+    EXPECT_LT(what.size(), 400u);
 }
 
 TEST(GltfErrors, FilesThatAreNoGltf) {

@@ -56,6 +56,7 @@ TEST(GltfResources, BuffersMustLieInTheirOwnFolder) {
     expect_says(with("file:///etc/passwd"), "relative to its own folder");
     expect_says(with("C:\\tree.bin"), "relative to its own folder");
     expect_says(with("missing\nname.bin"), "is not there: put it beside the file");
+    expect_says(with("missing%20name.bin"), "'missing name.bin', which is not there");
     put(folder / "scene" / "short.bin", bytes.substr(0, 100));
     expect_says(with("short.bin"), "is cut off");
 }

@@ -53,6 +53,22 @@ TEST(ObjScene, PolygonsOfAnyShapeAreCovered) {
     EXPECT_FLOAT_EQ(back, -3);
 }
 
+TEST(ObjScene, ColorsAreLinearWhereBlenderWroteThem) {
+    const std::string faces = "mtllib tree.mtl\n" + kSquare + "usemtl leaf\nf 1 2 3 4\n",
+                      mtl = "newmtl leaf\nKd 0.1 0.3 0.05\n";
+    const auto color = [](const MeshScene& scene) { return scene.materials[0].base_color; };
+    const MeshScene plain = load(faces, {{"tree.mtl", mtl}});
+    EXPECT_FLOAT_EQ(color(plain).g, linear_from_srgb(0.3f));
+    ASSERT_EQ(plain.notes.size(), 1u);
+    EXPECT_NE(plain.notes[0].find("read as sRGB"), std::string::npos) << plain.notes[0];
+    const MeshScene by_mtl = load(faces, {{"tree.mtl", "# Blender 4.2.0 MTL File: 'None'\n" + mtl}});
+    EXPECT_EQ(color(by_mtl), glm::vec4(0.1f, 0.3f, 0.05f, 1));
+    ASSERT_EQ(by_mtl.notes.size(), 1u);
+    EXPECT_NE(by_mtl.notes[0].find("read as linear"), std::string::npos) << by_mtl.notes[0];
+    EXPECT_EQ(color(load("# a tree\n# Blender v2.79 OBJ File\n" + faces, {{"tree.mtl", mtl}})), color(by_mtl));
+    EXPECT_TRUE(load(faces, {{"tree.mtl", "newmtl leaf\nKd 0 1 0\n"}}).notes.empty()) << "the same either way";
+}
+
 TEST(ObjScene, CornersShareVerticesAndMissingNormalsAreComputed) {
     const MeshScene scene = load(kSquare + "f 1/1 2/2 3/3\nf 1/1 3/3 4/4\n");
     const SceneMesh& mesh = scene.meshes[0];

@@ -81,5 +81,17 @@ TEST(TreeDescription, TextAndJsonTellTheSame) {
     EXPECT_EQ(nlohmann::json::parse(json.dump()), json);
 }
 
+TEST(TreeDescription, NamesOfFilesReachTheTerminalWithoutControls) {
+    Tree tree = described_tree();
+    tree.name = "a\x1b]0;title\x07";
+    tree.materials[1].name = "\xc2\x9b[2J" + std::string(77, 'x') + "\xc3\xa4" + std::string(5000, 'y');
+    tree.notes = {"two\nlines"};
+    const std::string text = text_of(describe(tree));
+    EXPECT_NE(text.find("tree         a?]0;title? (by hand)"), std::string::npos) << text;
+    EXPECT_NE(text.find("note         two?lines\n"), std::string::npos) << text;
+    EXPECT_EQ(text.find("yyy"), std::string::npos) << text;
+    EXPECT_EQ(text.find("\xc2\x9b"), std::string::npos) << text;
+}
+
 } // namespace
 } // namespace kokage

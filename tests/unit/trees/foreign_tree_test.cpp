@@ -220,6 +220,16 @@ TEST(ForeignTree, DoubledSheetsBecomeOneLeaf) {
     EXPECT_EQ(tree.leaves.size(), 2u);
 }
 
+TEST(ForeignTree, ZIsUpWhereTheUserSaysSo) {
+    GltfText file = small_tree_file();
+    const Tree upright = load(file), turned = load(file, {.z_is_up = true});
+    ASSERT_EQ(upright.leaves.size(), turned.leaves.size());
+    for (std::size_t i = 0; i < upright.leaves.size(); ++i) {
+        const glm::vec3 &a = upright.leaves[i].centre, &b = turned.leaves[i].centre;
+        EXPECT_NEAR(glm::distance(glm::vec3(a.x, a.z, -a.y), b), 0, 1e-5f) << i;
+    }
+}
+
 TEST(ForeignTree, LeafSizeAndScaleAreTaken) {
     GltfText file = small_tree_file();
     const Tree metres = load(file), centimetres = load(file, {.scale = 0.01});
@@ -228,6 +238,14 @@ TEST(ForeignTree, LeafSizeAndScaleAreTaken) {
     EXPECT_EQ(metres.skeleton.branches.size(), centimetres.skeleton.branches.size());
     EXPECT_THROW(load(file, {.scale = 0}), InputError);
     EXPECT_THROW(load(file, {.leaf_size = -1}), InputError);
+    const auto warns = [&](float size) {
+        const Tree tree = load(file, {.leaf_size = size});
+        return std::any_of(tree.notes.begin(), tree.notes.end(), [](const std::string& note) {
+            return note.find("less than a thousandth of the crown's radius") != std::string::npos;
+        });
+    };
+    EXPECT_TRUE(warns(1e-9f));
+    EXPECT_FALSE(warns(0.1f));
 }
 
 TEST(SurfacePatches, CutWhereTheSurfaceTurnsOrGrows) {

@@ -3,6 +3,7 @@
 #include "tests/support/program_run.h"
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 namespace kokage {
@@ -57,6 +58,35 @@ TEST(Describe, DrawsWhatItFound) {
     EXPECT_EQ(folder.files().size(), 1u);
 }
 
+TEST(Describe, DamagedTexturesAreSaidInOneLine) {
+    TemporaryFolder folder;
+    Image image(64, 64, 3);
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        image.pixels[i] = float((i * 37) % 101) / 101.f;
+    save_image(folder / "leaf.png", image);
+    std::fstream png(folder / "leaf.png", std::ios::binary | std::ios::in | std::ios::out);
+    png.seekp(std::streamoff(std::filesystem::file_size(folder / "leaf.png") / 2)).write("\x01\x02\x03\x04", 4);
+    png.close();
+    std::ofstream(folder / "tree.mtl") << "newmtl leaf\nmap_Kd leaf.png\n";
+    std::ofstream(folder / "tree.obj") << "mtllib tree.mtl\nusemtl leaf\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    const ProgramRun run = run_kokage({"describe", "tree.obj"}, folder.path());
+    EXPECT_EQ(run.status, 2);
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+    EXPECT_NE(run.errors.find("its pixels are damaged; export"), std::string::npos) << run.errors;
+}
+
+TEST(Describe, AFileWhoseZIsUpIsSetUpright) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "tree.obj") << "v 0 0 0\nv 1 0 0\nv 0 0 4\nf 1 2 3\n";
+    const auto height = [&](const std::vector<std::string>& more) {
+        std::vector<std::string> words{"describe", "tree.obj"};
+        words.insert(words.end(), more.begin(), more.end());
+        return run_kokage(words, folder.path()).output;
+    };
+    EXPECT_EQ(height({}).find("4 m high"), std::string::npos);
+    EXPECT_NE(height({"--up", "Z"}).find("4 m high"), std::string::npos) << height({"--up", "Z"});
+}
+
 TEST(Describe, WrongTreesAreRefusedInOneLine) {
     TemporaryFolder folder;
     std::ofstream(folder / "not a tree.glb") << "nothing of the kind";
@@ -69,6 +99,10 @@ TEST(Describe, WrongTreesAreRefusedInOneLine) {
         {{"describe", "not a tree.glb"}, "not a tree.glb"},
         {{"describe", "oak", "--leaves", "0"}, "leaves"},
         {{"describe", "oak", "--leaves", "many"}, "many"},
+        {{"describe", "oak", "--leaves", "1e12"}, "it takes a whole number, 1 to 2000000"},
+        {{"describe", "oak", "--set", "height=12"}, "height_to_width"},
+        {{"describe", "oak", "--up", "z"}, "--up"},
+        {{"describe", "not a tree.glb", "--up", "x"}, "--up"},
         {{"describe", "oak", "--set", "leaves"}, "NAME=VALUE"},
         {{"describe", "oak", "--set", "leavs=4"}, "leaves"},
         {{"describe", "oak", "--scale", "2"}, "--scale"},
