@@ -201,8 +201,6 @@ LeafShape leaf_shape(const GrowthParameters& p) {
     const std::optional<Spray> spray = leaf_spray(p);
     if (p.leaf_form == LeafForm::alpha) {
         builder.add_card(0);
-        if (has_needles(p.leaf_shape))
-            builder.add_card(kPi / 2);
         builder.shape.area = builder.triangle_area() * solid_share(*leaf_mask(p), mask_cutoff);
         const double cards = builder.triangle_area();
         if (!spray)

@@ -21,7 +21,7 @@ struct LeafShape {
 };
 
 /// Outlines: half_outline() mirrored, folded along the midrib by leaf_fold and bent along it by leaf_bend, so that the
-/// tip is leaf_bend degrees lower than the base. Cards: flat; two crossed ones for sprays. Petioles longer than a tenth
+/// tip is leaf_bend degrees lower than the base. Cards: flat; of a spray, its first half. Petioles longer than a tenth
 /// of the blade are two triangles about 1.5 mm wide (an aspen's stands upright); shorter ones only hold the blade off
 /// the shoot.
 LeafShape leaf_shape(const GrowthParameters& parameters);

@@ -18,8 +18,8 @@ std::vector<ParameterRow> leaf_rows() {
         real("leaf_fold", &P::leaf_fold, "degrees", 0, 60, "How far each half is folded up along the midrib."),
         real("leaf_up", &P::leaf_up, "", 0, 5, "How strongly leaves turn their upper side to the sky."),
         choice("leaf_form", &P::leaf_form, {"outline", "alpha"},
-               "Polygons with the leaf's outline, or rectangular cards with the outline in an alpha texture (for a "
-               "conifer's spray two crossed ones)."),
+               "Polygons with the leaf's outline, or rectangular cards with the outline, or a conifer's needles, in an "
+               "alpha texture."),
         choice("leaf_detail", &P::leaf_detail, {"kite", "lobed", "fine"},
                "Triangles of an outline leaf: 2 (a kite), 8 to 14 (lobed) or 26 to 54 (lobes and teeth); of a "
                "needle 1, 2 or 3."),

@@ -19,7 +19,7 @@ struct SpraySegment {
 
 /// In the frame of a leaf, in units of the spray's length: the axis runs from the origin along +y to y = 1 at most,
 /// everything lies within |x|, |z| <= width / 2. Segments lie near two planes, x-y and z-y, one half each (the
-/// second half is the first turned by 90 degrees about y), so that two crossed cards show them.
+/// second half is the first turned by 90 degrees about y), so that a card shows one of them.
 struct Spray {
     std::vector<SpraySegment> segments; ///< in units of the spray's length, after scaling x and z by `width`
     std::size_t first_half = 0;         ///< so many segments, from the first, are those near the plane x-y

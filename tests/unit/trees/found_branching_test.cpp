@@ -19,10 +19,7 @@ Tree grown(const std::string& species, int leaves, const std::vector<std::pair<c
 /// The measure that the requirement of 80 % is about: see compare_generations().
 void expect_generations(const Tree& truth, double least_share, std::uint64_t shuffle) {
     const Tree found = found_again(truth, shuffle);
-    // A conifer's leaf is two crossed cards: each is found as one.
-    const bool crossed = found.leaves.size() == 2 * truth.leaves.size();
-    EXPECT_TRUE(crossed || found.leaves.size() == truth.leaves.size())
-        << truth.source << ": " << found.leaves.size() << " leaves";
+    EXPECT_EQ(found.leaves.size(), truth.leaves.size()) << truth.source;
     EXPECT_FALSE(found.branching_known);
     const GenerationAgreement agreement = compare_generations(truth, found);
     std::string wrong;

@@ -176,7 +176,7 @@ TEST(LeafShape, TrianglesAreFew) {
         }
     }
     GrowthParameters card = find_species("spruce").parameters;
-    EXPECT_EQ(leaf_shape(card).triangles.size(), 4u) << "two crossed cards";
+    EXPECT_EQ(leaf_shape(card).triangles.size(), 2u) << "one card";
 }
 
 TEST(LeafShape, BendLowersTheTipAndKeepsTheMidribsLength) {

@@ -51,9 +51,12 @@ double mean_branching_angle(const Tree& tree) {
             ++at;
         if (at == 0 || at + 1 >= parent.size())
             continue;
-        const glm::vec3 axis = glm::normalize(parent[at + 1].position - parent[at - 1].position),
-                        out = glm::normalize(branch.nodes[2].position - branch.nodes[0].position);
-        sum += std::acos(std::clamp(glm::dot(axis, out), -1.f, 1.f)) * 180 / kPi;
+        const glm::vec3 axis = parent[at + 1].position - parent[at - 1].position,
+                        out = branch.nodes[2].position - branch.nodes[0].position;
+        const float lengths = glm::length(axis) * glm::length(out);
+        if (!(lengths > 0)) // nodes that bark's centre lines have moved to one place
+            continue;
+        sum += std::acos(std::clamp(glm::dot(axis, out) / lengths, -1.f, 1.f)) * 180 / kPi;
         ++count;
     }
     return count ? sum / count : 0;
