@@ -8,6 +8,7 @@
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
 #include "trees/find_leaves.h"
+#include "trees/part_names.h"
 #include "trees/stand_in_colors.h"
 #include "trees/surface_patches.h"
 
@@ -234,8 +235,9 @@ Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions
 
     progress.begin("finding foliage", 1);
     const FoundFoliage found = find_foliage(scene, options.foliage_materials, path);
-    stand_in_for_lost_colors(scene, found.kinds);
     tree.notes.insert(tree.notes.end(), found.notes.begin(), found.notes.end());
+    for (std::string& note : stand_in_for_lost_colors(scene, found.kinds))
+        tree.notes.push_back(std::move(note));
 
     // A part for each material and kind; vertex colours make a material of their own, as a mean.
     std::map<std::pair<int, int>, std::size_t> part_of; // (material, kind)

@@ -66,12 +66,12 @@ double green_share(const SceneMesh& mesh, const std::vector<bool>& green) {
     return all > 0 ? sum / all : 0;
 }
 
-SceneMesh take_green(SceneMesh& mesh, const std::vector<bool>& green) {
+SceneMesh take_triangles(SceneMesh& mesh, const std::vector<bool>& chosen) {
     SceneMesh taken = mesh;
     taken.triangles.clear();
     std::vector<glm::uvec3> kept;
-    for (std::size_t t = 0; t < green.size(); ++t)
-        (green[t] ? taken.triangles : kept).push_back(mesh.triangles[t]);
+    for (std::size_t t = 0; t < chosen.size(); ++t)
+        (chosen[t] ? taken.triangles : kept).push_back(mesh.triangles[t]);
     mesh.triangles = std::move(kept);
     return taken;
 }

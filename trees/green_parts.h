@@ -15,7 +15,7 @@ std::vector<bool> green_triangles(const SceneMesh& mesh, const SceneMaterial& ma
 /// Share of the mesh's area that is green, 0..1.
 double green_share(const SceneMesh& mesh, const std::vector<bool>& green);
 
-/// Takes the green triangles out of `mesh` into a mesh of their own; both keep all vertices.
-SceneMesh take_green(SceneMesh& mesh, const std::vector<bool>& green);
+/// Takes the chosen triangles out of `mesh` into a mesh of their own; both keep all vertices.
+SceneMesh take_triangles(SceneMesh& mesh, const std::vector<bool>& chosen);
 
 } // namespace kokage

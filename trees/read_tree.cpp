@@ -3,7 +3,6 @@
 #include "common/obj/obj_scene.h"
 #include "common/services/error.h"
 #include "trees/find_branching.h"
-#include "trees/find_foliage.h"
 #include "trees/foreign_tree.h"
 #include "trees/tree_extras.h"
 

@@ -5,6 +5,7 @@
 #include "trees/describe.h"
 #include "viewer/branching_picture.h"
 #include "viewer/command.h"
+#include "viewer/data_folder.h"
 #include "viewer/output_check.h"
 #include "viewer/tree_source.h"
 
@@ -18,6 +19,7 @@ namespace {
 
 struct DescribeOptions {
     TreeSource source;
+    std::filesystem::path data; ///< folder that a relative name is also looked for in
     bool json = false;
     std::filesystem::path image;
     int maps = 15;
@@ -38,7 +40,8 @@ std::string draw(const DescribeOptions& options, const Tree& tree, Progress& pro
     return text;
 }
 
-void describe_tree(const DescribeOptions& options, const CommandContext& context) {
+void describe_tree(DescribeOptions& options, const CommandContext& context) {
+    find_in_data(options.data, {&options.source.name});
     check_tree_source(options.source);
     if (options.maps < 1)
         throw InputError("--maps: " + std::to_string(options.maps) +
@@ -70,6 +73,7 @@ Command describe_command(CLI::App& program) {
                     "A tree's file (.glb, .gltf, .obj), or a species or species file (.json) to grow")
         ->type_name("NAME")
         ->required();
+    add_data_option(*app, options->data, "TREE is");
     add_growing_options(*app, options->source);
     add_loading_options(*app, options->source);
     app->add_flag("--json", options->json, "As JSON");

@@ -2,6 +2,7 @@
 #include "common/scene/image_file.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
 #include "viewer/output_check.h"
@@ -14,6 +15,7 @@
 #include "viewer/values.h"
 #include "viewer/write_json.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -43,6 +45,24 @@ Image draw(const Shading& shading, const ShadeOptions& options, Image& subject, 
     return render_picture(scene, queries, shading.environment, camera, options.picture, progress, &subject);
 }
 
+/// For a stranger's file in which nothing was taken for leaves; nothing to say of bare trees that know themselves bare.
+std::optional<std::string> no_foliage_warning(const Tree& tree) {
+    if (!tree.leaves.empty() || tree.branching_known)
+        return std::nullopt;
+    constexpr std::size_t kShown = 20;
+    std::string names;
+    for (std::size_t m = 0; m < std::min(tree.materials.size(), kShown); ++m) {
+        const std::string& name = tree.materials[m].name;
+        names += (names.empty() ? "" : ", ") + (name.empty() ? "one without a name" : "'" + shown_name(name) + "'");
+    }
+    if (tree.materials.size() > kShown)
+        names += " and " + std::to_string(tree.materials.size() - kShown) + " more";
+    return "no foliage was found, so no leaf was shaded: all is taken for bark; give --foliage NAME, a material, mesh "
+           "or "
+           "node of the file; its materials are " +
+           (names.empty() ? "none" : names);
+}
+
 void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress& progress) {
     s.tree =
         clock.run(options.tree.is_species() ? "grow" : "load", [&] { return obtain_tree(options.tree, progress); });
@@ -50,6 +70,8 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     s.environment = clock.run(
         "environment", [&] { return obtain_environment(options.surroundings, s.tree.origin, s.environment_report); });
     s.warnings = s.environment_report.warnings;
+    if (const std::optional<std::string> warning = no_foliage_warning(s.tree))
+        s.warnings.push_back(*warning);
     if (const std::optional<std::string> night = night_warning(options.surroundings))
         s.warnings.push_back(*night);
     s.patches = clock.run("patches", [&] {
@@ -67,6 +89,8 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(s.patches, s.tree, options.shading, progress); });
     s.solution = clock.run("solve", [&] { return transport->solve(s.environment, progress); });
+    if (s.tree.leaves.empty())
+        s.solution.estimated_error.reset(); // an error over no leaves would read as success
     if (s.solution.energy_in == 0)
         s.warnings.push_back("no light reaches the tree, and all of it is black: give --environment or --light that "
                              "shines on it");
@@ -113,6 +137,8 @@ void print_summary(const ShadeOptions& options, const Shading& s, const StageClo
                 s.tree.was_shaded ? " (shaded before: that light is replaced)" : "", s.environment.description.c_str());
     const std::string& instead = s.solution.method_instead;
     std::printf("%s: ", instead.empty() ? std::string(method_name(options.shading.method)).c_str() : instead.c_str());
+    if (s.tree.leaves.empty())
+        std::printf("no leaves, so no error of them, ");
     if (s.solution.estimated_error)
         std::printf("estimated error %.2g %%%s, ", 100 * *s.solution.estimated_error,
                     asked_text(options.shading).c_str());

@@ -1,5 +1,6 @@
 #include "viewer/shade_options.h"
 #include "common/services/error.h"
+#include "viewer/data_folder.h"
 #include "viewer/output_check.h"
 #include "viewer/shade_lods.h"
 #include "viewer/values.h"
@@ -191,24 +192,6 @@ void complete_outputs(ShadeOptions& o) {
     check_distinct({fs::path(o.surroundings.environment), o.output, o.image, o.report});
 }
 
-/// Names that are no file here are looked for in the data folder.
-void find_in_data(ShadeOptions& o) {
-    if (o.data.empty())
-        return;
-    std::error_code ignored;
-    if (!fs::is_directory(o.data, ignored))
-        throw InputError("--data (or KOKAGE_DATA): there is no folder '" + o.data.string() + "'");
-    for (std::string* name : {&o.tree.name, &o.surroundings.environment}) {
-        if (fs::exists(*name, ignored) || fs::path(*name).is_absolute())
-            continue;
-        for (const fs::path& folder : {o.data, o.data / "env", o.data / "trees"})
-            if (fs::is_regular_file(folder / *name, ignored)) {
-                *name = (folder / *name).string();
-                break;
-            }
-    }
-}
-
 } // namespace
 
 void add_shade_options(CLI::App& app, ShadeOptions& o) {
@@ -216,10 +199,7 @@ void add_shade_options(CLI::App& app, ShadeOptions& o) {
                    "A species or species file (.json) to grow, or a tree's file (.glb, .gltf, .obj)")
         ->type_name("NAME")
         ->capture_default_str();
-    app.add_option("--data", o.data,
-                   "A folder in which (and in whose env and trees) TREE and --environment are looked for too")
-        ->type_name("FOLDER")
-        ->envname("KOKAGE_DATA");
+    add_data_option(app, o.data, "TREE and --environment are");
     add_growing_options(app, o.tree);
     add_loading_options(app, o.tree);
     add_surroundings_options(app, o.surroundings);
@@ -229,7 +209,7 @@ void add_shade_options(CLI::App& app, ShadeOptions& o) {
 }
 
 void complete_shade_options(ShadeOptions& o) {
-    find_in_data(o);
+    find_in_data(o.data, {&o.tree.name, &o.surroundings.environment});
     name_outputs(o);
     complete_method(o);
     complete_materials(o);

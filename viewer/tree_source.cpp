@@ -34,6 +34,11 @@ CLI::Validator number_of_leaves() {
         "");
 }
 
+bool is_tree_file(const std::string& name) {
+    const std::string ending = lower_ending(name);
+    return ending == ".glb" || ending == ".gltf" || ending == ".obj";
+}
+
 } // namespace
 
 Species asked_species(const TreeSource& source) {
@@ -123,6 +128,9 @@ void check_tree_source(const TreeSource& source) {
     if (fs::is_directory(source.name, ignored))
         throw InputError("'" + source.name + "' is a folder; give a tree's file (.glb, .gltf, .obj)");
     if (!fs::exists(source.name, ignored)) {
+        if (is_tree_file(source.name))
+            throw InputError("there is no file '" + source.name +
+                             "'; give its whole path, or --data FOLDER (or KOKAGE_DATA) where it lies");
         std::string known;
         for (const Species& species : all_species())
             known += (known.empty() ? "" : ", ") + species.name;

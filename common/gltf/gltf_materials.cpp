@@ -237,6 +237,7 @@ std::vector<SceneMaterial> read_gltf_materials(const GltfDocument& document, std
         materials.push_back(reader.read(source, materials.size()));
     }
     materials.emplace_back().name = "default";
+    materials.back().is_missing = true;
     return materials;
 }
 

@@ -272,6 +272,7 @@ int ObjMaterials::index_of(const std::string& name) {
                              " materials");
         SceneMaterial& material = materials_.emplace_back();
         material.name = name.empty() ? "default" : name;
+        material.is_missing = name.empty();
         material.double_sided = true;
         material.color_is_lost = true;
         options_.emplace_back();

@@ -204,6 +204,7 @@ class ObjReader {
         scene_.origin = choose_origin(low, high);
         scene_.materials = materials_.materials();
         scene_.materials.emplace_back().name = "default";
+        scene_.materials.back().is_missing = true;
         for (MeshBuilder& builder : meshes_) {
             if (builder.triangles.empty())
                 continue;

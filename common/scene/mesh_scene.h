@@ -33,6 +33,7 @@ struct SceneMaterial {
     /// The file has a colour texture that can't be had (its format, or the file itself): it says nothing of how the
     /// surface looks, and a stated substitute takes its place.
     bool color_is_lost = false;
+    bool is_missing = false; ///< stands for surfaces that the file gives no material: a stated substitute as well
     AlphaMode alpha_mode = AlphaMode::opaque;
     float alpha_cutoff = 0.5f;
     bool double_sided = false;

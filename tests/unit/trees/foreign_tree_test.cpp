@@ -6,7 +6,7 @@
 #include "tests/support/program_run.h"
 #include "tests/support/tree_files.h"
 #include "trees/bark_skeleton.h"
-#include "trees/find_foliage.h"
+#include "trees/part_names.h"
 #include "trees/patches.h"
 #include "trees/surface_patches.h"
 

@@ -87,6 +87,22 @@ TEST(Describe, AFileWhoseZIsUpIsSetUpright) {
     EXPECT_NE(height({"--up", "Z"}).find("4 m high"), std::string::npos) << height({"--up", "Z"});
 }
 
+TEST(Describe, LooksInTheDataFolderAndNamesNoSpeciesForAFile) {
+    TemporaryFolder folder;
+    std::filesystem::create_directories(folder / "data/trees");
+    ASSERT_EQ(run_kokage({"grow", "--leaves", "50", "-o", "data/trees/tiny.glb", "--quiet"}, folder.path()).status, 0);
+    const ProgramRun run = run_kokage({"describe", "tiny.glb", "--data", "data"}, folder.path());
+    EXPECT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("leaves       50"), std::string::npos) << run.output;
+    for (const char* name : {"other.glb", "other.gltf", "other.OBJ"}) {
+        const ProgramRun missing = run_kokage({"describe", name, "--data", "data"}, folder.path());
+        EXPECT_EQ(missing.status, 2);
+        EXPECT_TRUE(is_one_complaint(missing.errors));
+        EXPECT_NE(missing.errors.find("--data"), std::string::npos) << missing.errors;
+        EXPECT_EQ(missing.errors.find("species"), std::string::npos) << missing.errors;
+    }
+}
+
 TEST(Describe, WrongTreesAreRefusedInOneLine) {
     TemporaryFolder folder;
     std::ofstream(folder / "not a tree.glb") << "nothing of the kind";

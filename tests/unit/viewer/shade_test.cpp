@@ -389,6 +389,28 @@ TEST(Shade, DataFolderIsSearchedForNamesThatAreNotHere) {
     EXPECT_EQ(run.status, 0) << run.errors;
 }
 
+TEST(Shade, NoFoliageIsAWarningAndNoSuccess) {
+    TemporaryFolder folder;
+    std::ofstream(folder / "post.obj") << "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0 2 0\nusemtl paint\n"
+                                       << "f 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n";
+    const ProgramRun run = run_kokage({"shade", "post.obj", "--effort", "16", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.errors.find("no foliage was found"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("--foliage NAME"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("'paint'"), std::string::npos) << run.errors;
+    EXPECT_EQ(run.output.find("estimated error"), std::string::npos) << run.output;
+    const Json report = Json::parse(read_text(folder / "r.json"));
+    EXPECT_TRUE(report["estimated_error"].is_null());
+    EXPECT_NE(report["warnings"].dump().find("--foliage NAME"), std::string::npos);
+    // A tree grown bare is meant to be bare.
+    const ProgramRun bare = run_kokage(
+        {"shade", "oak", "--leaves", "100", "--set", "season=winter", "--effort", "16", "--report", "w.json"},
+        folder.path());
+    ASSERT_EQ(bare.status, 0) << bare.errors;
+    EXPECT_EQ(bare.errors.find("foliage"), std::string::npos) << bare.errors;
+    EXPECT_TRUE(Json::parse(read_text(folder / "w.json"))["estimated_error"].is_null());
+}
+
 TEST(Compare, DifferentTreesAndUnshadedTreesAreRefused) {
     TemporaryFolder folder;
     ASSERT_EQ(run_kokage(small_shade({"-o", "a.glb", "--quiet"}), folder.path()).status, 0);
