@@ -56,7 +56,7 @@ for tree in "${trees[@]}"; do
         light=$(environment_source "$environment")
         [ -n "$light" ] || continue
         tile=$work/$tree-${environment%.*}.png
-        "$program" shade "$source" --quiet --environment "$light" --image "$tile" --image-size "$size" --samples "$samples"
+        "$program" shade "$source" --quiet --error 0.1 --environment "$light" --image "$tile" --image-size "$size" --samples "$samples"
         tiles+=("$tile")
         echo "made: $tree, $environment"
     done
