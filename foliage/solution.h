@@ -28,8 +28,8 @@ struct Solution {
     std::optional<double> estimated_error; ///< of the MRE, from differences of half samples, and paths where those do
                                            ///< not see it; empty where samples can't show it
     double energy_in = 0, energy_absorbed = 0,
-           energy_escaped = 0; ///< luminance x sr x m^2: into the tree from outside; balance = (absorbed + escaped)/in
-    std::string method_instead;      ///< the method that was used in place of the asked one; empty: the asked one
+           energy_escaped = 0;  ///< luminance x sr x m^2: into the tree from outside; balance = (absorbed + escaped)/in
+    std::string method_instead; ///< the method that was used in place of the asked one; empty: the asked one
     std::size_t transport_bytes = 0; ///< kept between relights
     WorkReport report;
 };

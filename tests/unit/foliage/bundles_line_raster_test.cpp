@@ -156,7 +156,8 @@ void expect_same_as_twin(const PatchScene& scene, const glm::vec3& direction, fl
                 continue;
             }
             for (std::size_t i = 0; i < fragments.size(); ++i)
-                ASSERT_EQ(lists.lists.key(pixel, std::uint32_t(i)) & face_mask, fragments[i].face) << x << " " << y << " " << i;
+                ASSERT_EQ(lists.lists.key(pixel, std::uint32_t(i)) & face_mask, fragments[i].face)
+                    << x << " " << y << " " << i;
             if (fragments.empty()) {
                 ASSERT_EQ(ends.near_keys[pixel], kNoKey);
                 ASSERT_EQ(ends.far_keys[pixel], 0u);

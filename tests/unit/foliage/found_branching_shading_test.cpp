@@ -62,8 +62,8 @@ Tree grown(const std::string& species, int leaves) {
 }
 
 // Measured on trees of seven broad-leaved species, 3,000 to 60,000 leaves: 0.2 to 0.7 %, birches and willows, whose
-// bark counts for more, up to 1.0 %; pine and spruce of 3,000 leaves 0.7 and 0.4 %, a cypress 1.2 %. Another seed of the same lines changes light-maps by 5 to 8 %, so this is no
-// accident.
+// bark counts for more, up to 1.0 %; pine and spruce of 3,000 leaves 0.7 and 0.4 %, a cypress 1.2 %. Another seed of
+// the same lines changes light-maps by 5 to 8 %, so this is no accident.
 TEST(FoundBranchingShading, LightMapsDifferByAtMostOnePercent) {
     EXPECT_LE(mre_of_copy(grown("oak", 4000), Method::light_maps), 0.01);
     EXPECT_LE(mre_of_copy(grown("maple", 3000), Method::light_maps), 0.01);
