@@ -65,7 +65,7 @@ TEST(GrowVariants, StoppedItKeepsWhatWasGrown) {
     const Json listed = manifest(folder);
     ASSERT_GE(listed["trees"].size(), 1u);
     const std::size_t there = listed["trees"].size();
-    EXPECT_EQ(run.errors, "kokage: stopped; " + std::to_string(there) + " of 1,000 trees " +
+    EXPECT_EQ(run.errors, "kokage: stopped; " + std::to_string(there) + " of 100,000 trees " +
                               (there == 1 ? "is" : "are") + " in 'trees'; the same command goes on\n");
     std::size_t files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(folder / "trees"))
