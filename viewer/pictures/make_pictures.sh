@@ -5,6 +5,7 @@
 #
 # PROGRAM: the built program, otherwise .build/release/kokage. Needs oiiotool (Debian: openimageio-tools).
 # KOKAGE_DATA: folder with trees/ and env/. Without it, or where a file is missing, the pictures that need it are left out, and named.
+# What oiiotool was called with, paths and all, is kept out of the pictures.
 # SIZE (of one picture of the sheet, otherwise 384x288) and SAMPLES (otherwise 24) may be set for a quick look.
 set -euo pipefail
 here=$(cd "$(dirname "$0")" && pwd)
@@ -29,7 +30,7 @@ environment_source() {
 }
 
 "$program" shade oak --image "$work/oak.png" --image-size 1280x800 --samples 48
-oiiotool "$work/oak.png" --compression jpeg:88 -o "$here/oak.jpg"
+oiiotool --nosoftwareattrib "$work/oak.png" --compression jpeg:88 -o "$here/oak.jpg"
 
 # The ten species in summer, those that shed their leaves bare, and three in their best season.
 sheet=()
@@ -39,7 +40,7 @@ for tile in {oak,beech,birch,maple,willow,aspen,pine,spruce,cypress,cherry}:summ
     sheet+=("$work/$tile.png")
     echo "made: $tile"
 done
-oiiotool "${sheet[@]}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
+oiiotool --nosoftwareattrib "${sheet[@]}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
 
 tiles=() rows=0 columns=0
 for environment in "${environments[@]}"; do
@@ -61,5 +62,5 @@ for tree in "${trees[@]}"; do
         echo "made: $tree, $environment"
     done
 done
-oiiotool "${tiles[@]}" --mosaic:pad=6 "${columns}x$rows" --compression jpeg:85 -o "$here/contact_sheet.jpg"
+oiiotool --nosoftwareattrib "${tiles[@]}" --mosaic:pad=6 "${columns}x$rows" --compression jpeg:85 -o "$here/contact_sheet.jpg"
 ls -l "$here"/*.jpg
