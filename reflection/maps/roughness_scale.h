@@ -1,0 +1,33 @@
+#pragma once
+// How rough a surface is, in each of the words that users have for it: smoothness λ (the radius in the paper's cube),
+// Phong's exponent Λ, glTF's roughness.
+#include "reflection/maps/lobe.h"
+
+namespace kokage {
+
+/// [R] eqs 12 and 13: Λ = g(λ) = -ln I / ln cos(arctan(u / (λ s))), evaluated as 2 ln I / log1p((u/(λ s))²).
+/// s = cube size in voxels, I = brightness levels; g(1) = Λ_max fixes u.
+class RoughnessScale {
+  public:
+    /// u solved from (s, I, Λ_max).
+    static RoughnessScale solved(int cube_size, double levels = 256, double most_exponent = 5000);
+    /// u as the paper prints it: 6.2.
+    static RoughnessScale as_printed(int cube_size, double levels = 256);
+
+    double exponent(double smoothness) const; ///< g(λ), λ in (0,1]; 0 at λ = 0
+    double smoothness(double exponent) const; ///< its inverse
+    double u() const { return u_; }
+    double levels() const { return levels_; }
+    int cube_size() const { return cube_size_; }
+
+  private:
+    RoughnessScale(double u, double levels, int cube_size);
+    double u_, levels_;
+    int cube_size_;
+};
+
+/// Phong's exponent whose lobe is as wide as GGX's at glTF's roughness (the rule and its error are in the .cpp).
+double exponent_from_roughness(double gltf_roughness);
+double roughness_from_exponent(double exponent);
+
+} // namespace kokage
