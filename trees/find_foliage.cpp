@@ -2,6 +2,7 @@
 
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/foliage_shape.h"
 #include "trees/green_parts.h"
 #include "trees/part_names.h"
@@ -15,7 +16,7 @@ namespace kokage {
 namespace {
 
 std::string display_name(const SceneMaterial& material, int index) {
-    return material.name.empty() ? "material " + std::to_string(index) : "'" + material.name + "'";
+    return material.name.empty() ? "material " + std::to_string(index) : "'" + shown_name(material.name) + "'";
 }
 
 FoundFoliage judge_by_user(const MeshScene& scene, const std::vector<std::string>& named, const std::string& path) {
@@ -193,14 +194,13 @@ class FoliageFinder {
                 verdict = {TreePartKind::foliage, "its name speaks of leaves too, and nothing else does"};
     }
 
-    /// At last: what falls into many small flat pieces is leaves, where something else is there that does not.
+    /// At last: what falls into many small flat pieces is leaves, beside wood or alone.
     void judge_by_shape() {
         constexpr std::size_t kManyPieces = 50;
         constexpr double kSmall = 0.2, kAll = 0.95, kSome = 0.05; // of the scene's diagonal; of the mesh's area
         const double longest = kSmall * diagonal_of(scene_);
         std::vector<LoosePieces> pieces(scene_.meshes.size());
         std::size_t count = 0;
-        bool wood = false;
         for (std::size_t m = 0; m < pieces.size(); ++m) {
             const SceneMesh& mesh = scene_.meshes[m];
             const std::string& material = scene_.materials[std::size_t(mesh.material)].name;
@@ -209,9 +209,8 @@ class FoliageFinder {
             if (open)
                 pieces[m] = small_flat_pieces(mesh, longest);
             count += pieces[m].count;
-            wood = wood || (!mesh.triangles.empty() && pieces[m].share < kAll);
         }
-        if (count < kManyPieces || !wood)
+        if (count < kManyPieces)
             return;
         for (std::size_t m = 0; m < pieces.size(); ++m) {
             const std::string rule =
@@ -243,7 +242,8 @@ class FoliageFinder {
         std::string text = meshes.size() == 1 ? " in mesh " : " in meshes ";
         for (std::size_t i = 0; i < std::min(meshes.size(), kShown); ++i) {
             const SceneMesh& mesh = scene_.meshes[meshes[i]];
-            text += (i > 0 ? ", " : "") + (mesh.name.empty() ? std::to_string(mesh.mesh_index) : "'" + mesh.name + "'");
+            text += (i > 0 ? ", " : "") +
+                    (mesh.name.empty() ? std::to_string(mesh.mesh_index) : "'" + shown_name(mesh.name) + "'");
         }
         return text + (meshes.size() > kShown ? " and " + std::to_string(meshes.size() - kShown) + " more" : "");
     }

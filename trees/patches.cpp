@@ -1,6 +1,7 @@
 #include "trees/patches.h"
 
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/leaf_subdivision.h"
 
 #include <algorithm>
@@ -23,20 +24,20 @@ std::vector<Run> find_runs(const Tree& tree, TreePartKind kind, std::size_t coun
             continue;
         const char* name = kind == TreePartKind::foliage ? "leaf " : "bark patch ";
         if (part.triangle_patch.size() != part.triangles.size())
-            throw InputError("tree '" + tree.name + "', part " + std::to_string(p) + ": " +
+            throw InputError("tree '" + shown_name(tree.name) + "', part " + std::to_string(p) + ": " +
                              std::to_string(part.triangles.size()) + " triangles, but patch numbers for " +
                              std::to_string(part.triangle_patch.size()));
         for (std::uint32_t t = 0; t < part.triangles.size(); ++t) {
             const std::uint32_t index = part.triangle_patch[t];
             if (index >= count)
-                throw InputError("tree '" + tree.name + "', part " + std::to_string(p) + ", triangle " +
+                throw InputError("tree '" + shown_name(tree.name) + "', part " + std::to_string(p) + ", triangle " +
                                  std::to_string(t) + ": " + name + std::to_string(index) + ", but there are only " +
                                  std::to_string(count));
             Run& run = runs[index];
             if (run.count == 0)
                 run = {p, t, 0};
             if (run.part != p || run.first + run.count != t)
-                throw InputError("tree '" + tree.name + "', part " + std::to_string(p) + ", triangle " +
+                throw InputError("tree '" + shown_name(tree.name) + "', part " + std::to_string(p) + ", triangle " +
                                  std::to_string(t) + ": the triangles of " + name + std::to_string(index) +
                                  " are not consecutive");
             ++run.count;
@@ -48,7 +49,7 @@ std::vector<Run> find_runs(const Tree& tree, TreePartKind kind, std::size_t coun
 void check_indices(const Tree& tree) {
     for (std::size_t p = 0; p < tree.parts.size(); ++p) {
         const TreePart& part = tree.parts[p];
-        const std::string where = "tree '" + tree.name + "', part " + std::to_string(p) + ": ";
+        const std::string where = "tree '" + shown_name(tree.name) + "', part " + std::to_string(p) + ": ";
         if (part.material >= tree.materials.size())
             throw InputError(where + "material " + std::to_string(part.material) + " of " +
                              std::to_string(tree.materials.size()));

@@ -2,6 +2,7 @@
 
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/patches.h"
 #include "trees/tree_extras.h"
 
@@ -20,7 +21,7 @@ std::size_t patch_number(const Tree& tree, const TreePart& part, std::size_t tri
 }
 
 void check_tree(const Tree& tree, const ShadedAttributes* shaded) {
-    const std::string where = "can't write tree '" + tree.name + "': ";
+    const std::string where = "can't write tree '" + shown_name(tree.name) + "': ";
     for (std::size_t p = 0; p < tree.parts.size(); ++p) {
         const TreePart& part = tree.parts[p];
         const std::string place = where + "part " + std::to_string(p) + " ";

@@ -132,7 +132,8 @@ void print_file(const std::filesystem::path& file) {
 }
 
 void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
-    std::printf("%s: %s, %s%s; %s\n", s.tree.name.c_str(), counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
+    std::printf("%s: %s, %s%s; %s\n", shown_name(s.tree.name).c_str(),
+                counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
                 counted(s.patches.patches.size(), "patch", "patches").c_str(),
                 s.tree.was_shaded ? " (shaded before: that light is replaced)" : "", s.environment.description.c_str());
     const std::string& instead = s.solution.method_instead;

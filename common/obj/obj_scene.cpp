@@ -1,6 +1,7 @@
 #include "common/obj/obj_scene.h"
 
 #include "common/geometry/polygon.h"
+#include "common/obj/obj_colors.h"
 #include "common/obj/obj_materials.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
@@ -89,7 +90,8 @@ class ObjReader {
     static ObjReader& to(void* self) { return *static_cast<ObjReader*>(self); }
     [[noreturn]] void fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
 
-    /// Joins lines that end in '\', reads material libraries, and refuses what is no text or has lines without end.
+    /// Joins lines that end in '\', reads material libraries and vertices' colours, and refuses what is no text or has
+    /// lines without end.
     void read_lines(std::vector<unsigned char>& bytes) {
         if (is_written_by_blender({reinterpret_cast<const char*>(bytes.data()), bytes.size()}))
             materials_.take_kd_as_linear();
@@ -112,6 +114,7 @@ class ObjReader {
             if (end - begin > 7 && std::memcmp(bytes.data() + begin, "mtllib", 6) == 0)
                 materials_.read_library(
                     std::string(bytes.begin() + std::ptrdiff_t(begin) + 7, bytes.begin() + std::ptrdiff_t(end)));
+            colors_.read_line({reinterpret_cast<const char*>(bytes.data()) + begin, end - begin});
             begin = i + 1;
         }
     }
@@ -226,6 +229,8 @@ class ObjReader {
         bool any_uv = false, any_normal = false, all_normals = true;
         for (const Corner& corner : builder.vertices) {
             mesh.positions.push_back(glm::vec3(glm::dvec3(positions_[std::size_t(corner[0])]) - scene_.origin));
+            if (!colors_.empty())
+                mesh.colors.emplace_back(colors_.of_vertex(std::size_t(corner[0])), 1.f);
             any_uv = any_uv || corner[1] >= 0;
             any_normal = any_normal || corner[2] >= 0;
             all_normals = all_normals && corner[2] >= 0;
@@ -286,6 +291,7 @@ class ObjReader {
     Progress& progress_;
     MeshScene scene_;
     ObjMaterials materials_;
+    ObjVertexColors colors_;
     std::vector<glm::vec3> positions_, normals_;
     std::vector<glm::vec2> uvs_;
     std::vector<MeshBuilder> meshes_;

@@ -1,5 +1,6 @@
 #pragma once
-// Image files through OpenImageIO: whatever it reads (PNG, JPEG, EXR, HDR, WebP, TIFF, TGA, BMP, ...) as floats.
+// Image files through libpng and OpenImageIO: whatever they read (PNG, JPEG, EXR, HDR, WebP, TIFF, TGA, BMP, ...) as
+// floats.
 #include "common/scene/image.h"
 
 #include <cstddef>

@@ -53,6 +53,24 @@ TEST(ObjScene, PolygonsOfAnyShapeAreCovered) {
     EXPECT_FLOAT_EQ(back, -3);
 }
 
+TEST(ObjScene, VerticesMayHaveColors) {
+    const auto colors = [](const std::string& vertices) { return load(vertices + "f 1 2 3\n").meshes[0].colors; };
+    EXPECT_TRUE(colors("v 0 0 0\nv 1 0 0 1\nv 1 1 0\n").empty()) << "w is no colour";
+    const std::vector<glm::vec4> some = colors("v 0 0 0 1 0.5 0\nv 1 0 0\n\tv  1 1 \\\n0 1.0 0 0 1\r\n");
+    ASSERT_EQ(some.size(), 3u);
+    EXPECT_EQ(some[0], glm::vec4(1, linear_from_srgb(0.5f), 0, 1));
+    EXPECT_EQ(some[1], glm::vec4(1)) << "white where none is given";
+    EXPECT_EQ(some[2], glm::vec4(0, 0, 1, 1)) << "behind w";
+    const std::vector<glm::vec4> bytes = colors("v 0 0 0 255 127.5 0\nv 1 0 0 nan 0 0\nv 1 1 0 -3 x 1\n");
+    EXPECT_EQ(bytes[0], glm::vec4(1, linear_from_srgb(0.5f), 0, 1));
+    EXPECT_EQ(bytes[1], glm::vec4(1));
+    EXPECT_EQ(bytes[2], glm::vec4(1));
+    const MeshScene lit = load("mtllib tree.mtl\nv 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\nusemtl leaf\nf 1 2 3\n",
+                               {{"tree.mtl", "newmtl leaf\nKd 0.5 0.5 0.5\n"}});
+    EXPECT_NEAR(lit.materials[0].base_color.r, linear_from_srgb(0.5f), 1e-6f) << "the two are multiplied, as in glTF";
+    EXPECT_EQ(lit.meshes[0].colors[0], glm::vec4(1, 0, 0, 1));
+}
+
 TEST(ObjScene, ColorsAreLinearWhereBlenderWroteThem) {
     const std::string faces = "mtllib tree.mtl\n" + kSquare + "usemtl leaf\nf 1 2 3 4\n",
                       mtl = "newmtl leaf\nKd 0.1 0.3 0.05\n";

@@ -147,7 +147,10 @@ TEST(FindFoliage, ManySmallFlatPiecesBesideATubeAreLeaves) {
     EXPECT_EQ(kinds_of(scene_of({tube("", 0), cards("", 1, 49)}, {{"m0", kBrown}, {"m1", kOrange}})),
               (Kinds{kBark, kBark}))
         << "too few";
-    EXPECT_EQ(kinds_of(scene_of({cards("", 0)}, {{"m0", kOrange}})), (Kinds{kBark})) << "nothing beside them";
+    EXPECT_EQ(kinds_of(scene_of({cards("", 0), cards("", 1, 5)}, {{"m0", kOrange}, {"m1", kBrown}})),
+              (Kinds{kLeaves, kLeaves}))
+        << "leaves alone, as some tools keep them in a file of their own";
+    EXPECT_EQ(kinds_of(scene_of({tube("", 0)}, {{"m0", kBrown}})), (Kinds{kBark})) << "wood alone";
     EXPECT_EQ(kinds_of(scene_of({tube("", 0), cards("", 1)}, {{"m0", kBrown}, {"bark chips", kOrange}})),
               (Kinds{kBark, kBark}))
         << "called wood";
