@@ -7,6 +7,7 @@
 #include "common/services/error.h"
 #include "common/services/random.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -82,6 +83,90 @@ TEST(Lobes, PhongValueKeepsItsDigits) {
     EXPECT_EQ(phong_lobe_value(3, 2.0), 0);
     EXPECT_EQ(phong_lobe_value(3, 3.9), 0);
     EXPECT_NEAR(phong_lobe_value(0, 1.9), 1 / (2 * kPiDouble), 1e-15);
+}
+
+/// Zonal coefficients by an independent road: long double, over w = 1 - t in pieces that double from the peak.
+template <class Value>
+std::vector<double> slow_coefficients(int bands, double narrowest, Value value) {
+    std::vector<long double> borders{0};
+    for (long double w = narrowest; w < 1; w *= 2)
+        borders.push_back(w);
+    for (long double rest = 0.25L; rest > 1e-30L; rest *= 0.25L) // a root at the right angle
+        borders.push_back(1 - rest);
+    borders.push_back(1);
+    std::sort(borders.begin(), borders.end());
+    const auto rule = gauss_legendre(300);
+    std::vector<long double> k(static_cast<std::size_t>(bands));
+    for (std::size_t piece = 1; piece < borders.size(); ++piece) {
+        const long double half = 0.5L * (borders[piece] - borders[piece - 1]),
+                          middle = 0.5L * (borders[piece] + borders[piece - 1]);
+        for (const QuadratureNode& node : rule) {
+            const long double w = middle + half * node.x, weight = half * node.weight * value(w);
+            long double p = 1, before = 0;
+            for (int l = 0; l < bands; ++l) {
+                k[std::size_t(l)] += weight * p;
+                const long double next = ((2 * l + 1) * (1 - w) * p - l * before) / (l + 1);
+                before = p;
+                p = next;
+            }
+        }
+    }
+    std::vector<double> normalised;
+    for (const long double value_l : k)
+        normalised.push_back(double(value_l / k[0]));
+    return normalised;
+}
+
+TEST(Lobes, GgxAgreesWithQuadratureForEveryRoughness) {
+    for (double roughness : {0.001, 0.01, 0.05, 0.1, 0.2, 0.35, 0.5, 0.7, 0.9, 0.99, 1.0}) {
+        // As the microfacet model has it: D of the half vector, whose squared cosine is (1+t)/2, times n.l.
+        const long double alpha = (long double)(roughness)*roughness, a2 = alpha * alpha;
+        const auto slow = slow_coefficients(300, 1e-14, [&](long double w) {
+            const long double d = (1 - w / 2) * (a2 - 1) + 1;
+            // the same, with the digits of the peak
+            const long double exact = a2 * (1 - w / 2) + w / 2;
+            EXPECT_NEAR(double(d / exact), 1, 1e-4 / double(a2) * 1e-14 + 1e-12);
+            return a2 / (exact * exact) * (1 - w);
+        });
+        const auto k = ggx_lobe(300, roughness);
+        for (std::size_t l = 0; l < k.size(); ++l)
+            ASSERT_NEAR(k[l], slow[l], 1e-12) << "roughness " << roughness << " l " << l;
+        double mass = 0; // of the value, by the same pieces
+        const double x = ggx_falloff(roughness);
+        for (double from = 0, to = std::min(1.0, 1e-3 / std::max(x, 1e-3));; from = to, to = std::min(1.0, 1.5 * to)) {
+            for (const QuadratureNode& node : gauss_legendre(40)) {
+                const double w = from + 0.5 * (to - from) * (1 + node.x);
+                mass += 2 * kPiDouble * 0.5 * (to - from) * node.weight * ggx_lobe_value(roughness, 2 * w);
+            }
+            if (to >= 1)
+                break;
+        }
+        EXPECT_NEAR(mass, 1, 1e-12) << roughness;
+    }
+}
+
+TEST(Lobes, GgxIsTheCosineAtRoughnessOneAndTheMirrorAtZero) {
+    const auto rough = ggx_lobe(100, 1), cosine = phong_lobe(100, 1);
+    for (std::size_t l = 0; l < 100; ++l)
+        EXPECT_NEAR(rough[l], cosine[l], 1e-13);
+    for (double w : {0.0, 0.3, 0.9})
+        EXPECT_NEAR(ggx_lobe_value(1, 2 * w), (1 - w) / kPiDouble, 1e-15);
+    for (const double value : ggx_lobe(2048, 0))
+        EXPECT_EQ(value, 1);
+    for (const double value : ggx_lobe(2048, 0.001)) // a mirror to the eye
+        EXPECT_NEAR(value, 1, 1e-4);
+    EXPECT_EQ(ggx_lobe_value(0.5, 2.1), 0);
+    EXPECT_TRUE(ggx_lobe(0, 0.5).empty());
+}
+
+TEST(Lobes, PhongAgreesWithQuadratureUpToTheSmoothest) {
+    for (double exponent : {0.3, 0.77, 1.0, 5.7, 63.9, 1234.5, 5000.0, 1e5}) {
+        const auto k = phong_lobe(300, exponent);
+        const auto slow =
+            slow_coefficients(300, 1e-8, [&](long double w) { return std::pow(1 - w, (long double)exponent); });
+        for (std::size_t l = 0; l < k.size(); ++l)
+            ASSERT_NEAR(k[l], slow[l], 1e-12) << "exponent " << exponent << " l " << l;
+    }
 }
 
 TEST(Lobes, ConeAgreesWithQuadrature) {

@@ -1,0 +1,18 @@
+#pragma once
+// Discs of light seen through a lobe.
+#include "common/environment/environment.h"
+#include "reflection/maps/lobe.h"
+
+namespace kokage {
+
+/// Integral of the lobe over the cone within `half_angle` of an axis that is `angle` away from the lobe's own
+/// (radians, 0 to pi): how much of the lobe's mass a disc of light covers. Relative error 1e-10 of the larger of
+/// the result and its share of the peak; by quadrature over angles from the lobe's axis, where the arc that lies in the
+/// cone is known.
+double lobe_over_cone(const Lobe& lobe, double angle, double half_angle);
+
+/// Radiance of a light at infinity as the lobe around a unit direction shows it. A light without extent counts by the
+/// lobe's value towards it.
+glm::dvec3 light_through_lobe(const DistantLight& light, const Lobe& lobe, const glm::dvec3& direction);
+
+} // namespace kokage
