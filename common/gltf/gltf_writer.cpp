@@ -48,6 +48,20 @@ tinygltf::Value value_from(const nlohmann::json& json) {
     return {};
 }
 
+/// Bytes behind those that are there already, at a multiple of four. Returns the view's index.
+int append_view(tinygltf::Model& model, std::span<const std::byte> bytes) {
+    std::vector<unsigned char>& buffer = model.buffers[0].data;
+    buffer.resize((buffer.size() + 3) / 4 * 4);
+    tinygltf::BufferView view;
+    view.buffer = 0;
+    view.byteOffset = buffer.size();
+    view.byteLength = bytes.size();
+    const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
+    buffer.insert(buffer.end(), begin, begin + bytes.size());
+    model.bufferViews.push_back(std::move(view));
+    return int(model.bufferViews.size()) - 1;
+}
+
 } // namespace
 
 GltfWriter::GltfWriter() : model_(std::make_unique<tinygltf::Model>()) {
@@ -66,20 +80,11 @@ int GltfWriter::add_array(std::span<const std::byte> bytes, std::size_t count, i
                           GltfArrayUse use, const std::string& name) {
     if (count == 0)
         return -1;
-    std::vector<unsigned char>& buffer = model_->buffers[0].data;
-    buffer.resize((buffer.size() + 3) / 4 * 4);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = buffer.size();
-    view.byteLength = bytes.size();
-    view.target = use == GltfArrayUse::indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER
-                  : use == GltfArrayUse::data  ? 0
-                                               : TINYGLTF_TARGET_ARRAY_BUFFER;
-    const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
-    buffer.insert(buffer.end(), begin, begin + bytes.size());
-    model_->bufferViews.push_back(std::move(view));
     tinygltf::Accessor accessor;
-    accessor.bufferView = int(model_->bufferViews.size()) - 1;
+    accessor.bufferView = append_view(*model_, bytes);
+    model_->bufferViews.back().target = use == GltfArrayUse::indices ? TINYGLTF_TARGET_ELEMENT_ARRAY_BUFFER
+                                        : use == GltfArrayUse::data  ? 0
+                                                                     : TINYGLTF_TARGET_ARRAY_BUFFER;
     accessor.componentType = component_type;
     accessor.count = count;
     accessor.type = type;
@@ -128,17 +133,8 @@ int GltfWriter::add(std::span<const std::uint32_t> values, GltfArrayUse use, con
 }
 
 int GltfWriter::add_png(std::span<const std::byte> bytes, const std::string& name) {
-    std::vector<unsigned char>& buffer = model_->buffers[0].data;
-    buffer.resize((buffer.size() + 3) / 4 * 4);
-    tinygltf::BufferView view;
-    view.buffer = 0;
-    view.byteOffset = buffer.size();
-    view.byteLength = bytes.size();
-    const auto* begin = reinterpret_cast<const unsigned char*>(bytes.data());
-    buffer.insert(buffer.end(), begin, begin + bytes.size());
-    model_->bufferViews.push_back(std::move(view));
     tinygltf::Image image;
-    image.bufferView = int(model_->bufferViews.size()) - 1;
+    image.bufferView = append_view(*model_, bytes);
     image.mimeType = "image/png";
     image.name = valid_utf8(name);
     model_->images.push_back(std::move(image));

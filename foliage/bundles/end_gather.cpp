@@ -1,5 +1,5 @@
-// Vector code by Google Highway: compiled once for every instruction set, chosen at run time. The scalar twin is in the
-// tests.
+#include "foliage/bundles/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "foliage/bundles/end_gather.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

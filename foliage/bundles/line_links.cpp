@@ -1,5 +1,5 @@
-// Vector code by Google Highway: compiled once for every instruction set, chosen at run time.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "foliage/bundles/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "foliage/bundles/line_links.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

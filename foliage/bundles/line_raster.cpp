@@ -1,6 +1,5 @@
-// Vector code by Google Highway: compiled once for every instruction set, chosen at run time.
-// Batches hold arrays of vectors, which the sizeless vectors of SVE and RVV can't be in; Arm has NEON for it.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "foliage/bundles/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "foliage/bundles/line_raster.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

@@ -1,10 +1,8 @@
 #include "tests/benchmark/foliage_benchmark.h"
-#include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
-#include "tests/benchmark/benchmark_files.h"
 #include "tests/benchmark/benchmark_plan.h"
-#include "tests/benchmark/calibration.h"
+#include "tests/benchmark/benchmark_run.h"
 #include "tests/benchmark/effort_plot.h"
 #include "tests/benchmark/environments.h"
 #include "tests/benchmark/find_reference.h"
@@ -38,32 +36,28 @@ ReferenceOptions reference_options(const FoliageBenchmarkOptions& options) {
     return reference;
 }
 
-/// Everything that a run collects, and how it is told.
-class Run {
+/// Measures planned scenes one after the other.
+class FoliageRun {
   public:
-    Run(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out)
-        : options_(options), progress_(progress), out_(out), scenes_(data_folder(options)) {}
+    FoliageRun(const FoliageBenchmarkOptions& options, Progress& progress, std::ostream& out)
+        : options_(options), progress_(progress), out_(out), run_(options.output_folder, out),
+          scenes_(data_folder(options)) {}
 
     int execute(const std::vector<PlannedScene>& plan) {
-        std::filesystem::create_directories(options_.output_folder);
-        calibration_ = calibration_seconds();
-        out_ << "calibration loop: " << std::fixed << std::setprecision(3) << calibration_ << " CPU-s\n" << std::flush;
         for (std::size_t i = 0; i < plan.size(); ++i) {
             out_ << "[" << i + 1 << "/" << plan.size() << "] " << to_string(plan[i].name) << "\n" << std::flush;
             if (const std::string reason = scenes_.why_not(plan[i].name); !reason.empty())
-                note("skipped: " + to_string(plan[i].name) + ": " + reason);
+                run_.note("skipped: " + to_string(plan[i].name) + ": " + reason);
             else
                 run_scene(plan[i]);
             write();
         }
-        const std::string plots =
-            options_.plots ? plot_efforts(records_, options_.output_folder) : "plots skipped: not asked for";
-        note(plots);
+        run_.note(options_.plots ? plot_efforts(records_, options_.output_folder) : "plots skipped: not asked for");
         write();
         out_ << "\n"
              << summary_table(summarise(records_)) << "\nwritten to " << options_.output_folder.string() << " in "
              << std::setprecision(0) << watch_.wall() << " s\n";
-        return failures_ == 0 ? 0 : 1;
+        return run_.exit_status();
     }
 
   private:
@@ -81,17 +75,11 @@ class Run {
         }
         for (const PlannedEffort& effort : planned.efforts) {
             progress_.throw_if_stopped();
-            try {
+            run_.attempt(std::string(method_name(effort.method)) + " on " + to_string(planned.name), [&] {
                 records_.push_back(
                     measure(scene, effort, truth, relit, relit_truth ? &*relit_truth : nullptr, progress_));
                 tell(records_.back());
-            } catch (const Stopped&) {
-                throw;
-            } catch (const std::exception& error) { // one method's failure must not hide the others' figures
-                ++failures_;
-                note("failed: " + std::string(method_name(effort.method)) + " on " + to_string(planned.name) + ": " +
-                     error.what());
-            }
+            });
         }
     }
 
@@ -117,30 +105,21 @@ class Run {
              << std::flush;
     }
 
-    void note(const std::string& line) {
-        notes_.push_back(line);
-        out_ << "  " << line << "\n" << std::flush;
-    }
-
-    /// What is known so far, so that a run that is stopped leaves what it had measured.
     void write() const {
         nlohmann::json records = nlohmann::json::array();
         for (const FoliageRecord& record : records_)
             records.push_back(to_json(record));
-        write_benchmark(options_.output_folder, "foliage", records,
-                        {"Benchmark of foliage shading", calibration_, summary_table(summarise(records_)),
-                         record_table(records_), notes_});
+        run_.write("foliage", "Benchmark of foliage shading", records, summary_table(summarise(records_)),
+                   record_table(records_));
     }
 
     const FoliageBenchmarkOptions& options_;
     Progress& progress_;
     std::ostream& out_;
-    BenchScenes scenes_;
     Stopwatch watch_;
-    double calibration_ = 0;
+    BenchmarkRun run_;
+    BenchScenes scenes_;
     std::vector<FoliageRecord> records_;
-    std::vector<std::string> notes_;
-    int failures_ = 0;
 };
 
 } // namespace
@@ -153,7 +132,7 @@ int run_foliage_benchmark(const std::vector<PlannedScene>& plan, const FoliageBe
                           Progress& progress, std::ostream& out) {
     if (options.threads > 0)
         set_thread_count(options.threads);
-    return Run(options, progress, out).execute(plan);
+    return FoliageRun(options, progress, out).execute(plan);
 }
 
 } // namespace kokage

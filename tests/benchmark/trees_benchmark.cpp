@@ -1,10 +1,8 @@
 #include "tests/benchmark/trees_benchmark.h"
 #include "common/services/count_text.h"
-#include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
-#include "tests/benchmark/benchmark_files.h"
-#include "tests/benchmark/calibration.h"
+#include "tests/benchmark/benchmark_run.h"
 #include "tests/benchmark/markdown.h"
 #include "tests/benchmark/peer_generators.h"
 #include "tests/benchmark/tree_tables.h"
@@ -52,16 +50,13 @@ TreeRecord grow_once(const GrowthParameters& parameters) {
     return record;
 }
 
-/// Everything that a run collects, and how it is told.
-class Run {
+/// Measures species one after the other, then other generators.
+class TreesRun {
   public:
-    Run(const TreesBenchmarkOptions& options, Progress& progress, std::ostream& out)
-        : options_(options), progress_(progress), out_(out) {}
+    TreesRun(const TreesBenchmarkOptions& options, Progress& progress, std::ostream& out)
+        : options_(options), progress_(progress), out_(out), run_(options.output_folder, out) {}
 
     int execute(const std::vector<std::string>& species, const std::vector<int>& leaves) {
-        std::filesystem::create_directories(options_.output_folder);
-        calibration_ = calibration_seconds();
-        out_ << "calibration loop: " << std::fixed << std::setprecision(3) << calibration_ << " CPU-s\n" << std::flush;
         for (const std::string& name : species) {
             for (const int count : leaves) {
                 progress_.throw_if_stopped();
@@ -71,27 +66,20 @@ class Run {
         }
         if (options_.peers)
             for (const PeerGenerator& peer : peer_generators(std::uint64_t(leaves.back()), options_.quick)) {
-                run(peer);
+                measure(peer);
                 write();
             }
-        note(options_.plots ? plot_trees(records_, options_.output_folder) : "plots skipped: not asked for");
+        run_.note(options_.plots ? plot_trees(records_, options_.output_folder) : "plots skipped: not asked for");
         write();
         out_ << "\n" << growth_figures(records_) << "\nwritten to " << options_.output_folder.string() << "\n";
-        return failures_ == 0 ? 0 : 1;
+        return run_.exit_status();
     }
 
   private:
-    void run(const PeerGenerator& peer) {
+    void measure(const PeerGenerator& peer) {
         if (!peer.why_not.empty())
-            return note("skipped: " + peer.name + ": " + peer.why_not);
-        try {
-            run_peer(peer, progress_, [this](const TreeRecord& record) { take(record); });
-        } catch (const Stopped&) {
-            throw;
-        } catch (const std::exception& error) { // others' failure must not hide our figures
-            ++failures_;
-            note("failed: " + peer.name + ": " + error.what());
-        }
+            return run_.note("skipped: " + peer.name + ": " + peer.why_not);
+        run_.attempt(peer.name, [&] { run_peer(peer, progress_, [this](const TreeRecord& record) { take(record); }); });
     }
 
     void take(const TreeRecord& record) {
@@ -104,27 +92,18 @@ class Run {
              << std::flush;
     }
 
-    void note(const std::string& line) {
-        notes_.push_back(line);
-        out_ << "  " << line << "\n" << std::flush;
-    }
-
     void write() const {
         nlohmann::json records = nlohmann::json::array();
         for (const TreeRecord& record : records_)
             records.push_back(to_json(record));
-        write_benchmark(
-            options_.output_folder, "trees", records,
-            {"Benchmark of growing", calibration_, growth_figures(records_), growth_table(records_), notes_});
+        run_.write("trees", "Benchmark of growing", records, growth_figures(records_), growth_table(records_));
     }
 
     const TreesBenchmarkOptions& options_;
     Progress& progress_;
     std::ostream& out_;
-    double calibration_ = 0;
+    BenchmarkRun run_;
     std::vector<TreeRecord> records_;
-    std::vector<std::string> notes_;
-    int failures_ = 0;
 };
 
 } // namespace
@@ -155,7 +134,7 @@ int run_trees_benchmark(const std::vector<std::string>& species, const std::vect
                         const TreesBenchmarkOptions& options, Progress& progress, std::ostream& out) {
     if (options.threads > 0)
         set_thread_count(options.threads);
-    return Run(options, progress, out).execute(species, leaves);
+    return TreesRun(options, progress, out).execute(species, leaves);
 }
 
 } // namespace kokage

@@ -2,6 +2,7 @@
 // has changed: look why before storing another.
 #include "foliage/method.h"
 #include "tests/unit/foliage/rooms.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -15,7 +16,7 @@ Solution bounce(const test::SmallTree& small, const Environment& environment, in
     options.effort = 80;
     options.error = error;
     options.max_bounces = max_bounces;
-    return make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+    return test::shade(small, environment, options);
 }
 
 test::SmallTree crown(float albedo) {

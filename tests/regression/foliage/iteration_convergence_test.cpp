@@ -1,8 +1,7 @@
 // How fast bounces die out, on fixed scenes with stored figures. A change here means that the operator has changed:
 // look why before storing another.
-#include "foliage/light_maps.h"
-#include "foliage/paper.h"
 #include "tests/unit/foliage/rooms.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -17,9 +16,7 @@ Solution bounce(Method method, const test::SmallTree& small, GatherRule gather =
     options.gather = gather;
     options.maps = 15;
     options.max_bounces = 12;
-    return (method == Method::paper ? make_paper_transport(small.scene, small.tree, options, silent_progress())
-                                    : make_light_maps_transport(small.scene, small.tree, options, silent_progress()))
-        ->solve(test::sky_and_sun(), silent_progress());
+    return test::shade(small, test::sky_and_sun(), options);
 }
 
 /// Mean factor from bounce to bounce over bounces 3 to 6: late enough that one pattern of light is left (the operator's
@@ -72,10 +69,10 @@ TEST(IterationConvergence, InAClosedRoomLightMapsFollowTheGeometricSeries) {
     Environment lamp = test::constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {0, 4.2f, 0}, glm::vec3(1)}};
     ShadingOptions options;
+    options.method = Method::light_maps;
     options.maps = 15;
     options.max_bounces = 40;
-    const Solution solution =
-        make_light_maps_transport(room.scene, room.tree, options, silent_progress())->solve(lamp, silent_progress());
+    const Solution solution = test::shade(room, lamp, options);
     const double factor = solution.residuals[40] / solution.residuals[30];
     EXPECT_NEAR(factor, std::pow(a, 10) * (1 - std::pow(a, 31)) / (1 - std::pow(a, 41)), 0.03);
 }
@@ -93,10 +90,7 @@ TEST(IterationConvergence, ASettingThatDoesNotContractIsSaidPlainly) {
     for (const Method method : {Method::paper, Method::light_maps}) {
         ShadingOptions options;
         options.method = method;
-        const Solution solution =
-            (method == Method::paper ? make_paper_transport(room.scene, room.tree, options, silent_progress())
-                                     : make_light_maps_transport(room.scene, room.tree, options, silent_progress()))
-                ->solve(lamp, silent_progress());
+        const Solution solution = test::shade(room, lamp, options);
         // The relative change falls as 1/k all the same: the default stops below 0.005, but says that there is no
         // limit.
         ASSERT_FALSE(solution.report.warnings.empty());

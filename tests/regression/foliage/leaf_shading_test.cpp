@@ -1,59 +1,33 @@
 // How far the shading of a fixed crown is from the truth, by each method that uses light maps. Stored figures, each
 // explained: a change means that a method shades differently: look why before storing another.
-#include "foliage/accuracy.h"
-#include "foliage/light_maps.h"
-#include "foliage/paper.h"
-#include "foliage/path_traced.h"
-#include "tests/unit/foliage/small_trees.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 
 #include <gtest/gtest.h>
 
 namespace kokage {
 namespace {
 
-class LeafShading : public testing::Test {
-  protected:
-    static constexpr std::uint32_t kLeaves = 1000;
+const test::JudgedCrown& judged() {
+    static const test::JudgedCrown crown(512);
+    return crown;
+}
 
-    static void SetUpTestSuite() {
-        crown = new test::SmallTree(test::ball_on_a_skeleton(kLeaves, 3, test::bright_leaf()));
-        reference =
-            new PathTracedReference(path_trace_reference(crown->scene, test::sky_and_sun(), 512, 1, silent_progress()));
-    }
-    static void TearDownTestSuite() {
-        delete reference;
-        delete crown;
-    }
+Accuracy judge(Method method, GatherRule gather = GatherRule::cosine, int directions = 0) {
+    ShadingOptions options;
+    options.method = method;
+    options.gather = gather;
+    options.effort = directions;
+    const PatchScene& scene = judged().crown.scene;
+    const Solution solution = test::shade(judged().crown, test::sky_and_sun(), options);
+    return accuracy(leaf_side_radiance(scene, solution.radiance), judged().reference.sides, solid_areas(scene));
+}
 
-    static Accuracy judge(ShadingOptions options) {
-        const auto transport = options.method == Method::paper
-                                   ? make_paper_transport(crown->scene, crown->tree, options, silent_progress())
-                                   : make_light_maps_transport(crown->scene, crown->tree, options, silent_progress());
-        const Solution solution = transport->solve(test::sky_and_sun(), silent_progress());
-        return accuracy(leaf_side_radiance(crown->scene, solution.radiance), reference->sides,
-                        solid_areas(crown->scene));
-    }
-
-    static Accuracy judge(Method method, GatherRule gather = GatherRule::cosine, int directions = 0) {
-        ShadingOptions options;
-        options.method = method;
-        options.gather = gather;
-        options.effort = directions;
-        return judge(options);
-    }
-
-    static test::SmallTree* crown;
-    static PathTracedReference* reference;
-};
-test::SmallTree* LeafShading::crown = nullptr;
-PathTracedReference* LeafShading::reference = nullptr;
-
-TEST_F(LeafShading, ReferenceIsQuietEnoughToJudge) {
-    EXPECT_LT(reference->noise, 0.025);
+TEST(LeafShading, ReferenceIsQuietEnoughToJudge) {
+    EXPECT_LT(judged().reference.noise, 0.025);
 }
 
 // One mean of all maps, no cosine, no shadow of its own: most leaves get about the same light, sunlit or not.
-TEST_F(LeafShading, PaperIsFarFromTheTruth) {
+TEST(LeafShading, PaperIsFarFromTheTruth) {
     const Accuracy paper = judge(Method::paper);
     EXPECT_NEAR(paper.mre, 1.27, 0.05);
     EXPECT_NEAR(paper.bias, 0.05, 0.03);
@@ -61,7 +35,7 @@ TEST_F(LeafShading, PaperIsFarFromTheTruth) {
 
 // First light is exact but for its noise, which 256 directions make small; what is left is the maps' blur of bounced
 // light.
-TEST_F(LeafShading, LightMapsComeNearIt) {
+TEST(LeafShading, LightMapsComeNearIt) {
     const Accuracy cosine = judge(Method::light_maps, GatherRule::cosine, 256);
     EXPECT_NEAR(cosine.mre, 0.068, 0.01);
     EXPECT_NEAR(cosine.bias, -0.005, 0.02);
@@ -71,7 +45,7 @@ TEST_F(LeafShading, LightMapsComeNearIt) {
 }
 
 // In a small crown of bright leaves the noise of the default's 64 directions drowns in that blur.
-TEST_F(LeafShading, LightMapsByDefaultAreAboutAsNear) {
+TEST(LeafShading, LightMapsByDefaultAreAboutAsNear) {
     EXPECT_NEAR(judge(Method::light_maps).mre, 0.069, 0.01);
 }
 

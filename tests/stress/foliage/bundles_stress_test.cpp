@@ -1,5 +1,6 @@
 // Extremes that must stay finite, and where physics says so, stay the same.
 #include "foliage/method.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 #include "tests/unit/foliage/solution_checks.h"
 
 #include <algorithm>
@@ -14,7 +15,7 @@ Solution shade(const test::SmallTree& small, const Environment& environment, int
     options.method = Method::bundles;
     options.effort = directions;
     options.for_hosts = true;
-    return make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+    return test::shade(small, environment, options);
 }
 
 void expect_finite(const Solution& solution) {

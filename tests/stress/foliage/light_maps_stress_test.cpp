@@ -1,6 +1,5 @@
 // Extremes that must stay finite, and where physics says so, stay the same.
-#include "foliage/light_maps.h"
-#include "foliage/paper.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 #include "tests/unit/foliage/solution_checks.h"
 
 #include <cmath>
@@ -15,10 +14,7 @@ class MapMethods : public testing::TestWithParam<Method> {
         ShadingOptions options;
         options.method = GetParam();
         options.bands = bands;
-        return (GetParam() == Method::paper
-                    ? make_paper_transport(small.scene, small.tree, options, silent_progress())
-                    : make_light_maps_transport(small.scene, small.tree, options, silent_progress()))
-            ->solve(environment, silent_progress());
+        return test::shade(small, environment, options);
     }
 };
 INSTANTIATE_TEST_SUITE_P(Both, MapMethods, testing::Values(Method::paper, Method::light_maps));

@@ -26,6 +26,14 @@ struct Outcome {
     int loaded = 0, refused = 0;
 };
 
+/// Some are whole enough to be read, some are not: else the damage would be none, or too much.
+void expect_both(const Outcome& outcome, int least, const char* what) {
+    EXPECT_GT(outcome.loaded, least);
+    EXPECT_GT(outcome.refused, least);
+    std::printf("%d %s: %d loaded, %d refused\n", outcome.loaded + outcome.refused, what, outcome.loaded,
+                outcome.refused);
+}
+
 void read_mutant(const std::filesystem::path& path, Outcome& outcome, const std::string& which) {
     const std::clock_t start = std::clock(); // of the processor: a busy machine may stop us for seconds
     try {
@@ -65,89 +73,87 @@ std::vector<FileKind> kinds_and_ours() {
     return kinds;
 }
 
+/// Reads a tree `count` times with one of its files damaged: damage(original, random, i) gives that file's bytes.
+template <class Damage>
+void read_mutants(const FileKind& kind, const std::string& name, int count, Random random, const char* what,
+                  Outcome& outcome, Damage&& damage) {
+    TemporaryFolder folder;
+    write_files(kind, folder.path());
+    const std::string& original = kind.files.at(name);
+    for (int i = 0; i < count; ++i) {
+        write_bytes(folder / name, damage(original, random, i));
+        read_mutant(folder / kind.main, outcome, kind.kind + ", " + name + ", " + what + ", case " + std::to_string(i));
+    }
+}
+
+bool is_binary(const FileKind& kind) {
+    return kind.main.ends_with(".glb");
+}
+
+std::size_t json_length(const std::string& glb) {
+    return *reinterpret_cast<const std::uint32_t*>(glb.data() + 12);
+}
+
 /// Where in a file damage is of interest: the JSON and header of a .glb take most of it.
 std::size_t interesting_range(const std::string& bytes, int number) {
-    if (bytes.starts_with("glTF") && number % 4 != 3)
-        return 20 + *reinterpret_cast<const std::uint32_t*>(bytes.data() + 12);
-    return bytes.size();
+    return bytes.starts_with("glTF") && number % 4 != 3 ? 20 + json_length(bytes) : bytes.size();
 }
 
 TEST(MutatedFiles, ChangedBytesInEveryKind) {
     Outcome outcome;
     std::uint64_t stream = 0;
-    for (const FileKind& kind : kinds_and_ours()) {
-        TemporaryFolder folder;
-        write_files(kind, folder.path());
-        for (const auto& [name, original] : kind.files) {
-            Random random(7, ++stream);
-            for (int i = 0; i < cases(60); ++i) {
-                std::string bytes = original;
-                for (std::uint32_t change = 0; change <= random.below(4); ++change)
-                    bytes[random.below(std::uint32_t(interesting_range(bytes, i)))] = char(random.below(256));
-                write_bytes(folder / name, bytes);
-                read_mutant(folder / kind.main, outcome, kind.kind + ", " + name + ", case " + std::to_string(i));
-            }
-            write_bytes(folder / name, original);
-        }
-    }
-    EXPECT_GT(outcome.loaded, 20);
-    EXPECT_GT(outcome.refused, 20);
-    std::printf("%d changed files: %d loaded, %d refused\n", outcome.loaded + outcome.refused, outcome.loaded,
-                outcome.refused);
+    for (const FileKind& kind : kinds_and_ours())
+        for (const auto& [name, original] : kind.files)
+            read_mutants(kind, name, cases(60), Random(7, ++stream), "bytes", outcome,
+                         [](std::string bytes, Random& random, int i) {
+                             for (std::uint32_t change = 0; change <= random.below(4); ++change)
+                                 bytes[random.below(std::uint32_t(interesting_range(bytes, i)))] =
+                                     char(random.below(256));
+                             return bytes;
+                         });
+    expect_both(outcome, 20, "changed files");
 }
 
-/// The bytes behind the base64 of a glTF's first buffer, changed in place: the JSON stays whole, so that damage gets as
-/// far as the decoders.
+/// Where a glTF's binaries lie in its main file: behind the base64 of its first buffer, or in the last chunk of a .glb.
+std::pair<std::size_t, std::size_t> binary_range(const FileKind& kind) {
+    const std::string& original = kind.files.at(kind.main);
+    const std::string marker = "base64,";
+    const std::size_t begin = original.find(marker);
+    if (begin == std::string::npos)
+        return {original.size() * 3 / 4, original.size()};
+    return {begin + marker.size(), original.find('"', begin + marker.size())};
+}
+
+/// Binaries are changed in place: the JSON stays whole, so that damage gets as far as the decoders.
 TEST(MutatedFiles, ChangedBinariesOfEveryKind) {
+    const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     Outcome outcome;
     std::uint64_t stream = 100;
     for (const FileKind& kind : kinds_and_ours()) {
         if (kind.main == "tree.obj")
             continue;
-        TemporaryFolder folder;
-        write_files(kind, folder.path());
-        const std::string& original = kind.files.at(kind.main);
-        const std::string marker = "base64,";
-        std::size_t begin = original.find(marker), end = begin;
-        if (begin == std::string::npos) {
-            begin = original.size() * 3 / 4; // a .glb's binary chunk comes last
-            end = original.size();
-        } else {
-            begin += marker.size();
-            end = original.find('"', begin);
-        }
-        Random random(8, ++stream);
-        const std::string digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-        for (int i = 0; i < cases(100); ++i) {
-            std::string bytes = original;
-            for (std::uint32_t change = 0; change <= random.below(6); ++change) {
-                const std::size_t at = begin + random.below(std::uint32_t(end - begin));
-                bytes[at] = kind.main.ends_with(".glb") ? char(random.below(256)) : digits[random.below(64)];
-            }
-            write_bytes(folder / kind.main, bytes);
-            read_mutant(folder / kind.main, outcome, kind.kind + ", binary, case " + std::to_string(i));
-        }
+        const auto [begin, end] = binary_range(kind);
+        read_mutants(kind, kind.main, cases(100), Random(8, ++stream), "binary", outcome,
+                     [&, first = begin, count = std::uint32_t(end - begin)](std::string bytes, Random& random, int) {
+                         for (std::uint32_t change = 0; change <= random.below(6); ++change) {
+                             const std::size_t at = first + random.below(count);
+                             bytes[at] = is_binary(kind) ? char(random.below(256)) : digits[random.below(64)];
+                         }
+                         return bytes;
+                     });
     }
-    EXPECT_GT(outcome.loaded, 20);
-    EXPECT_GT(outcome.refused, 20);
-    std::printf("%d changed binaries: %d loaded, %d refused\n", outcome.loaded + outcome.refused, outcome.loaded,
-                outcome.refused);
+    expect_both(outcome, 20, "changed binaries");
 }
 
 TEST(MutatedFiles, CutOffFilesOfEveryKind) {
     Outcome outcome;
     std::uint64_t stream = 200;
-    for (const FileKind& kind : kinds_and_ours()) {
-        TemporaryFolder folder;
-        write_files(kind, folder.path());
-        const std::string& original = kind.files.at(kind.main);
-        Random random(9, ++stream);
-        for (int i = 0; i < cases(25); ++i) {
-            write_bytes(folder / kind.main,
-                        original.substr(0, i < 10 ? std::size_t(i) : random.below(std::uint32_t(original.size()))));
-            read_mutant(folder / kind.main, outcome, kind.kind + ", cut off, case " + std::to_string(i));
-        }
-    }
+    for (const FileKind& kind : kinds_and_ours())
+        read_mutants(kind, kind.main, cases(25), Random(9, ++stream), "cut off", outcome,
+                     [](const std::string& original, Random& random, int i) {
+                         return original.substr(0,
+                                                i < 10 ? std::size_t(i) : random.below(std::uint32_t(original.size())));
+                     });
     EXPECT_GT(outcome.refused, outcome.loaded) << "an OBJ that is cut off between faces is whole";
 }
 
@@ -160,6 +166,20 @@ void collect_numbers(nlohmann::json& json, std::vector<nlohmann::json*>& numbers
             collect_numbers(child, numbers);
 }
 
+/// A .glb with another JSON.
+std::string with_json(const std::string& glb, std::string text) {
+    text.resize((text.size() + 3) / 4 * 4, ' ');
+    const std::uint32_t chunk = std::uint32_t(text.size());
+    std::string bytes = glb.substr(0, 12);
+    bytes.append(reinterpret_cast<const char*>(&chunk), 4)
+        .append("JSON")
+        .append(text)
+        .append(glb.substr(20 + json_length(glb)));
+    const std::uint32_t whole = std::uint32_t(bytes.size());
+    std::memcpy(bytes.data() + 8, &whole, 4);
+    return bytes;
+}
+
 TEST(MutatedFiles, ReplacedNumbersInEveryKind) {
     const std::vector<nlohmann::json> values = {
         0,     -1,   1,      2,      3, 255, 65536, 2147483647, -2147483648ll, 4294967295u, 9007199254740993u,
@@ -169,90 +189,58 @@ TEST(MutatedFiles, ReplacedNumbersInEveryKind) {
     for (const FileKind& kind : kinds_and_ours()) {
         if (kind.main == "tree.obj")
             continue;
-        TemporaryFolder folder;
-        write_files(kind, folder.path());
-        const std::string& original = kind.files.at(kind.main);
-        const bool binary = kind.main.ends_with(".glb");
-        const std::size_t length = binary ? *reinterpret_cast<const std::uint32_t*>(original.data() + 12) : 0;
-        const nlohmann::json json = nlohmann::json::parse(binary ? original.substr(20, length) : original);
-        Random random(10, ++stream);
-        for (int i = 0; i < cases(60); ++i) {
-            nlohmann::json changed = json;
-            std::vector<nlohmann::json*> numbers;
-            collect_numbers(changed, numbers);
-            *numbers[random.below(std::uint32_t(numbers.size()))] = values[random.below(std::uint32_t(values.size()))];
-            std::string bytes = changed.dump();
-            if (binary) {
-                std::string text = bytes;
-                text.resize((text.size() + 3) / 4 * 4, ' ');
-                bytes = original.substr(0, 12);
-                const std::uint32_t chunk = std::uint32_t(text.size());
-                bytes.append(reinterpret_cast<const char*>(&chunk), 4)
-                    .append("JSON")
-                    .append(text)
-                    .append(original.substr(20 + length));
-                const std::uint32_t whole = std::uint32_t(bytes.size());
-                std::memcpy(bytes.data() + 8, &whole, 4);
-            }
-            write_bytes(folder / kind.main, bytes);
-            read_mutant(folder / kind.main, outcome, kind.kind + ", number, case " + std::to_string(i));
-        }
+        const std::string& main = kind.files.at(kind.main);
+        const nlohmann::json json = nlohmann::json::parse(is_binary(kind) ? main.substr(20, json_length(main)) : main);
+        read_mutants(kind, kind.main, cases(60), Random(10, ++stream), "number", outcome,
+                     [&](const std::string& original, Random& random, int) {
+                         nlohmann::json changed = json;
+                         std::vector<nlohmann::json*> numbers;
+                         collect_numbers(changed, numbers);
+                         nlohmann::json& number = *numbers[random.below(std::uint32_t(numbers.size()))];
+                         number = values[random.below(std::uint32_t(values.size()))];
+                         return is_binary(kind) ? with_json(original, changed.dump()) : changed.dump();
+                     });
     }
-    EXPECT_GT(outcome.loaded, 20);
-    EXPECT_GT(outcome.refused, 20);
-    std::printf("%d files with a number replaced: %d loaded, %d refused\n", outcome.loaded + outcome.refused,
-                outcome.loaded, outcome.refused);
+    expect_both(outcome, 20, "files with a number replaced");
 }
 
 /// Words of an OBJ and its MTL swapped, doubled and made into numbers that are too large.
 TEST(MutatedFiles, ChangedWordsOfObj) {
     const FileKind kind = tree_as_obj();
-    TemporaryFolder folder;
-    write_files(kind, folder.path());
     const std::vector<std::string> words = {
         "f",   "v",  "usemtl", "mtllib", "-1/-1/-1", "99999999999", "-99999", "1//",    "///",   "1e400",
         "nan", "\\", "g",      "\n",     "map_Kd",   "-s",          "newmtl", "\n\n\n", "0/0/0", "d"};
     Outcome outcome;
-    for (const std::string name : {"tree.obj", "two words.mtl"}) {
-        const std::string& original = kind.files.at(name);
-        Random random(11, name.size());
-        for (int i = 0; i < cases(200); ++i) {
-            std::string text = original;
-            for (std::uint32_t change = 0; change <= random.below(3); ++change) {
-                const std::size_t at = random.below(std::uint32_t(text.size()));
-                const std::size_t begin = text.find_last_of(" \n", at), end = text.find_first_of(" \n", at);
-                if (begin == std::string::npos || end == std::string::npos || begin >= end)
-                    continue;
-                text.replace(begin + 1, end - begin - 1, words[random.below(std::uint32_t(words.size()))]);
-            }
-            write_bytes(folder / name, text);
-            read_mutant(folder / kind.main, outcome, name + ", case " + std::to_string(i));
-        }
-        write_bytes(folder / name, original);
-    }
-    EXPECT_GT(outcome.loaded, 10);
-    EXPECT_GT(outcome.refused, 10);
+    for (const std::string name : {"tree.obj", "two words.mtl"})
+        read_mutants(kind, name, cases(200), Random(11, name.size()), "words", outcome,
+                     [&](std::string text, Random& random, int) {
+                         for (std::uint32_t change = 0; change <= random.below(3); ++change) {
+                             const std::size_t at = random.below(std::uint32_t(text.size()));
+                             const std::size_t begin = text.find_last_of(" \n", at),
+                                               end = text.find_first_of(" \n", at);
+                             if (begin == std::string::npos || end == std::string::npos || begin >= end)
+                                 continue;
+                             text.replace(begin + 1, end - begin - 1, words[random.below(std::uint32_t(words.size()))]);
+                         }
+                         return text;
+                     });
+    expect_both(outcome, 10, "files with other words");
 }
 
 TEST(MutatedFiles, RealFiles) {
     const auto data = data_folder();
     if (!data)
         GTEST_SKIP() << "skipped: KOKAGE_DATA is not set";
-    TemporaryFolder folder;
     Outcome outcome;
-    for (const char* name : {"kenney_tree_oak_fall.glb", "quaternius_tex_pine_1.glb", "playcanvas_low_poly_tree.glb",
-                             "market_low_poly_tree.gltf", "potted_plant_02.glb"}) {
-        const std::string original = read_text(*data / "trees" / name);
-        Random random(12, std::hash<std::string>()(name));
-        for (int i = 0; i < cases(20); ++i) {
-            std::string bytes = original;
-            for (int change = 0; change < 3; ++change)
-                bytes[random.below(i % 2 ? std::uint32_t(bytes.size()) : 2500u)] = char(random.below(256));
-            const std::string mutant = std::string("mutant") + std::filesystem::path(name).extension().string();
-            write_bytes(folder / mutant, bytes);
-            read_mutant(folder / mutant, outcome, std::string(name) + ", case " + std::to_string(i));
-        }
-    }
+    for (const std::string name : {"kenney_tree_oak_fall.glb", "quaternius_tex_pine_1.glb",
+                                   "playcanvas_low_poly_tree.glb", "market_low_poly_tree.gltf", "potted_plant_02.glb"})
+        read_mutants({"real", name, {{name, read_text(*data / "trees" / name)}}}, name, cases(20),
+                     Random(12, std::hash<std::string>()(name)), "bytes", outcome,
+                     [](std::string bytes, Random& random, int i) {
+                         for (int change = 0; change < 3; ++change)
+                             bytes[random.below(i % 2 ? std::uint32_t(bytes.size()) : 2500u)] = char(random.below(256));
+                         return bytes;
+                     });
     EXPECT_GT(outcome.loaded + outcome.refused, 0);
 }
 

@@ -1,9 +1,6 @@
 // Morph targets, skins, instances and levels of detail: what a glTF shows is not always what its arrays hold.
-#include "common/gltf/gltf_scene.h"
-#include "tests/support/gltf_text.h"
-#include "tests/support/temporary_folder.h"
-
 #include "common/services/error.h"
+#include "tests/unit/common/gltf_loading.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -11,17 +8,7 @@
 namespace kokage {
 namespace {
 
-MeshScene load(const GltfText& file) {
-    TemporaryFolder folder;
-    file.write(folder / "scene.gltf");
-    return flatten(GltfDocument::read(folder / "scene.gltf"));
-}
-
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-    EXPECT_NEAR(a.z, b.z, tolerance);
-}
+using test::expect_near, test::load;
 
 TEST(GltfDeformation, MorphTargetsAreAddedByTheirWeights) {
     GltfText file = GltfText::triangle();

@@ -1,32 +1,20 @@
 // Flattening: nodes, scenes, winding, normals, texture coordinates, accessors of every kind.
-#include "common/gltf/gltf_scene.h"
-
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
-#include "tests/support/gltf_text.h"
 #include "tests/support/program_run.h"
+#include "tests/unit/common/gltf_loading.h"
 
 #include <gtest/gtest.h>
 
 namespace kokage {
 namespace {
 
-MeshScene load(const GltfText& file) {
-    TemporaryFolder folder;
-    file.write(folder / "scene.gltf");
-    return flatten(GltfDocument::read(folder / "scene.gltf"));
-}
+using test::expect_near, test::load;
 
 glm::vec3 geometric_normal(const SceneMesh& mesh, std::size_t t) {
     const glm::uvec3 c = mesh.triangles[t];
     return glm::normalize(
         glm::cross(mesh.positions[c.y] - mesh.positions[c.x], mesh.positions[c.z] - mesh.positions[c.x]));
-}
-
-void expect_near(const glm::vec3& a, const glm::vec3& b, float tolerance = 1e-6f) {
-    EXPECT_NEAR(a.x, b.x, tolerance);
-    EXPECT_NEAR(a.y, b.y, tolerance);
-    EXPECT_NEAR(a.z, b.z, tolerance);
 }
 
 TEST(GltfScene, MultipliesNodeTransforms) {

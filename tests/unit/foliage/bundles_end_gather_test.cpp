@@ -1,9 +1,9 @@
 // The vector code that adds up the ends of lines against a scalar loop in double precision.
 #include "foliage/bundles/end_gather.h"
+#include "tests/unit/foliage/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 
 namespace kokage {
 namespace {
@@ -129,14 +129,7 @@ TEST(BundlesEndGather, PartsOfTheDirectionsAddUp) {
 
 TEST(BundlesEndGather, EveryInstructionSetAddsTheSame) {
     const RandomEnds ends(150, 50);
-    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().DeInit();
-        SCOPED_TRACE(hwy::TargetName(target));
-        expect_same_as_twin(ends, 0, 12);
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
+    test::with_every_instruction_set([&] { expect_same_as_twin(ends, 0, 12); });
 }
 
 } // namespace

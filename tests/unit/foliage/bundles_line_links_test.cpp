@@ -2,11 +2,11 @@
 #include "common/services/random.h"
 #include "foliage/bundles/bundle_tracing.h"
 #include "foliage/bundles/line_links.h"
+#include "tests/unit/foliage/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <map>
 #include <numeric>
 
@@ -14,21 +14,6 @@ namespace kokage {
 namespace {
 
 using namespace bundles;
-
-/// Calls test() with every instruction set that this machine has.
-template <class Test>
-void with_every_instruction_set(Test&& test) {
-    const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
-    ASSERT_FALSE(targets.empty());
-    for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().DeInit();
-        SCOPED_TRACE(hwy::TargetName(target));
-        test();
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
-}
 
 /// Some pixels hold nothing, most a few fragments, one more than is sorted in vectors.
 TEST(BundlesLineLinks, FragmentsAreSortedAsByTheTwin) {
@@ -56,7 +41,7 @@ TEST(BundlesLineLinks, FragmentsAreSortedAsByTheTwin) {
         ++twin_far[list.back() % kFaces];
     }
     FragmentLists lists;
-    with_every_instruction_set([&] {
+    test::with_every_instruction_set([&] {
         std::vector<std::uint32_t> near_count(kFaces, 0), far_count(kFaces, 0);
         sort_fragments(kPixels, pixels, keys, kFaces - 1, lists, near_count, far_count);
         for (std::uint32_t pixel = 0; pixel < kPixels; ++pixel) {
@@ -100,7 +85,7 @@ TEST(BundlesLineLinks, LinksAreThoseOfASlowWalkAlongTheLines) {
     for (const glm::vec3& direction :
          {glm::normalize(glm::vec3(0.3f, -0.8f, 0.4f)), glm::normalize(glm::vec3(-0.5f, -0.5f, 0.6f))})
         for (std::uint32_t phase : {0u, 1u, 2u, 3u})
-            with_every_instruction_set([&] {
+            test::with_every_instruction_set([&] {
                 const Projection projection = fit_projection(facets, direction, 250, {0.3f, 0.6f});
                 RasterScratch raster;
                 draw_fragments(scene, facets, projection, raster);

@@ -1,11 +1,11 @@
 // The rasters of the lines against a slow twin: every pixel centre against every polygon, in double precision.
 #include "foliage/bundles/line_raster.h"
+#include "tests/unit/foliage/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
-#include <hwy/targets.h>
 #include <set>
 
 namespace kokage {
@@ -230,19 +230,12 @@ TEST(BundlesLineRaster, HolesOfCardsLetLinesThrough) {
 }
 
 TEST(BundlesLineRaster, EveryInstructionSetDrawsTheSame) {
-    const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
-    ASSERT_FALSE(targets.empty());
-    for (const std::int64_t target : targets) {
-        hwy::SetSupportedTargetsForTest(target);
-        hwy::GetChosenTarget().DeInit();
-        SCOPED_TRACE(hwy::TargetName(target));
+    test::with_every_instruction_set([&] {
         expect_same_as_twin(leaves_and_bark(), kDirections[0], 70);
         PatchScene cards = test::random_crown(30, 3, test::realistic_leaf());
         test::mask_rectangles(cards, test::half_mask());
         expect_same_as_twin(cards, kDirections[0], 90);
-    }
-    hwy::SetSupportedTargetsForTest(0);
-    hwy::GetChosenTarget().DeInit();
+    });
 }
 
 // A facet's fragments stand for its projected area: many pixels tell it well.

@@ -5,6 +5,7 @@
 #include "foliage/accuracy.h"
 #include "foliage/bundles/outside_light.h"
 #include "foliage/path_traced.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>
@@ -42,7 +43,7 @@ test::SmallTree mixed_ball(std::uint32_t leaves, const Optics& optics) {
 Solution shade(const test::SmallTree& small, const Environment& environment, int directions) {
     ShadingOptions options;
     options.effort = directions;
-    return make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
+    return test::shade(small, environment, options);
 }
 
 std::uint64_t count_of(const Solution& solution, const std::string& name) {

@@ -4,6 +4,7 @@
 #include "foliage/bundles/bundles.h"
 #include "foliage/path_traced.h"
 #include "tests/unit/foliage/rooms.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,9 +20,7 @@ ShadingOptions bundles_options(int directions = 0) {
     return options;
 }
 
-Solution shade(const test::SmallTree& small, const Environment& environment, const ShadingOptions& options) {
-    return make_transport(small.scene, small.tree, options, silent_progress())->solve(environment, silent_progress());
-}
+using test::shade;
 
 double largest_difference(const SideRadiance& a, const SideRadiance& b) {
     double difference = 0, largest = 0;

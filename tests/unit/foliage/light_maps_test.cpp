@@ -2,6 +2,7 @@
 #include "common/services/parallel.h"
 #include "foliage/light_maps.h"
 #include "tests/unit/foliage/rooms.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 
 #include <algorithm>
 #include <gtest/gtest.h>
@@ -16,10 +17,9 @@ ShadingOptions light_maps_options(GatherRule gather = GatherRule::cosine) {
     return options;
 }
 
-Solution shade(const test::SmallTree& small, const Environment& environment,
-               const ShadingOptions& options = light_maps_options()) {
-    return make_light_maps_transport(small.scene, small.tree, options, silent_progress())
-        ->solve(environment, silent_progress());
+using test::shade;
+Solution shade(const test::SmallTree& small, const Environment& environment) {
+    return shade(small, environment, light_maps_options());
 }
 
 class LightMapsGather : public testing::TestWithParam<GatherRule> {};

@@ -3,6 +3,7 @@
 #include "foliage/map_reading.h"
 #include "foliage/paper.h"
 #include "foliage/patch_geometry.h"
+#include "tests/unit/foliage/shade_small_trees.h"
 #include "tests/unit/foliage/solution_checks.h"
 
 #include <algorithm>
@@ -17,10 +18,9 @@ ShadingOptions paper_options() {
     return options;
 }
 
-Solution shade(const test::SmallTree& small, const Environment& environment,
-               const ShadingOptions& options = paper_options()) {
-    return make_paper_transport(small.scene, small.tree, options, silent_progress())
-        ->solve(environment, silent_progress());
+using test::shade;
+Solution shade(const test::SmallTree& small, const Environment& environment) {
+    return shade(small, environment, paper_options());
 }
 
 std::uint64_t count_of(const Solution& solution, const std::string& name) {

@@ -55,19 +55,6 @@ OnLine nearest_on(const Tube& tube, const glm::vec3& point) {
     return best;
 }
 
-/// Largest over smallest scale of the texture on a triangle.
-double stretch(const TreePart& part, const glm::uvec3& t) {
-    const glm::dvec3 e1(part.positions[t.y] - part.positions[t.x]), e2(part.positions[t.z] - part.positions[t.x]);
-    const glm::dvec2 w1(part.uvs[t.y] - part.uvs[t.x]), w2(part.uvs[t.z] - part.uvs[t.x]);
-    const double det = w1.x * w2.y - w2.x * w1.y;
-    if (det == 0)
-        return 1e30;
-    const glm::dvec3 du = (w2.y * e1 - w1.y * e2) / det, dv = (w1.x * e2 - w2.x * e1) / det;
-    const double a = glm::dot(du, du), b = glm::dot(du, dv), c = glm::dot(dv, dv);
-    const double root = std::sqrt((a - c) * (a - c) + 4 * b * b);
-    return std::sqrt((a + c + root) / std::max(a + c - root, 1e-30));
-}
-
 struct BarkQuality {
     bool is_manifold = true;
     std::size_t inside_out = 0, sides = 0;
@@ -98,7 +85,7 @@ BarkQuality measure(const GrowthParameters& p) {
                 continue;
             ++quality.sides;
             quality.inside_out += glm::dot(glm::cross(b - a, c - a), line.out) < 0;
-            const double here = triangle_area(bark, v), s = stretch(bark, v);
+            const double here = triangle_area(bark, v), s = texture_stretch(bark, v);
             quality.area += here;
             quality.area_above_2_5 += s > 2.5 ? here : 0;
             quality.area_above_6 += s > 6 ? here : 0;
@@ -131,7 +118,7 @@ TEST(BarkQuality, TheMeasureSeesATubeThatIsTurnedInsideOut) {
     bark.uvs = {{0, 0}, {1, 0}, {0, 4}};
     bark.triangles = {{0, 1, 2}};
     EXPECT_FALSE(is_closed_manifold(bark, 0, 1)) << "one triangle is open";
-    EXPECT_NEAR(stretch(bark, {0, 1, 2}), 4, 1e-6);
+    EXPECT_NEAR(texture_stretch(bark, {0, 1, 2}), 4, 1e-6);
 }
 
 } // namespace

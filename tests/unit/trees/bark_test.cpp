@@ -105,19 +105,6 @@ TEST(Bark, PatchesAreConsecutiveAndSmall) {
     EXPECT_LT(areas[thick + 1], 0.06) << "all but the feet of thick branches, which are hidden in their parents";
 }
 
-/// Largest over smallest scale of the texture on a triangle.
-double stretch(const TreePart& part, const glm::uvec3& t) {
-    const glm::dvec3 e1(part.positions[t.y] - part.positions[t.x]), e2(part.positions[t.z] - part.positions[t.x]);
-    const glm::dvec2 w1(part.uvs[t.y] - part.uvs[t.x]), w2(part.uvs[t.z] - part.uvs[t.x]);
-    const double det = w1.x * w2.y - w2.x * w1.y;
-    if (det == 0)
-        return 1e30;
-    const glm::dvec3 du = (w2.y * e1 - w1.y * e2) / det, dv = (w1.x * e2 - w2.x * e1) / det;
-    const double a = glm::dot(du, du), b = glm::dot(du, dv), c = glm::dot(dv, dv);
-    const double root = std::sqrt((a - c) * (a - c) + 4 * b * b);
-    return std::sqrt((a + c + root) / std::max(a + c - root, 1e-30));
-}
-
 TEST(Bark, TextureIsNotStretched) {
     const Tree tree = oak(30000);
     const TreePart bark = all_bark(tree);
@@ -125,7 +112,7 @@ TEST(Bark, TextureIsNotStretched) {
     for (const glm::uvec3& t : bark.triangles) {
         const double here = triangle_area(bark, t);
         area += here;
-        stretched += stretch(bark, t) > 2.5 ? here : 0;
+        stretched += texture_stretch(bark, t) > 2.5 ? here : 0;
     }
     EXPECT_LT(stretched, 0.2 * area);
 }

@@ -13,6 +13,19 @@ inline double triangle_area(const TreePart& part, const glm::uvec3& t) {
     return 0.5 * glm::length(glm::cross(b - a, c - a));
 }
 
+/// Largest over smallest scale of the texture on a triangle.
+inline double texture_stretch(const TreePart& part, const glm::uvec3& t) {
+    const glm::dvec3 e1(part.positions[t.y] - part.positions[t.x]), e2(part.positions[t.z] - part.positions[t.x]);
+    const glm::dvec2 w1(part.uvs[t.y] - part.uvs[t.x]), w2(part.uvs[t.z] - part.uvs[t.x]);
+    const double det = w1.x * w2.y - w2.x * w1.y;
+    if (det == 0)
+        return 1e30;
+    const glm::dvec3 du = (w2.y * e1 - w1.y * e2) / det, dv = (w1.x * e2 - w2.x * e1) / det;
+    const double a = glm::dot(du, du), b = glm::dot(du, dv), c = glm::dot(dv, dv);
+    const double root = std::sqrt((a - c) * (a - c) + 4 * b * b);
+    return std::sqrt((a + c + root) / std::max(a + c - root, 1e-30));
+}
+
 inline bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
