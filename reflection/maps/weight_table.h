@@ -14,6 +14,13 @@
 namespace kokage {
 
 enum class TableWeights {
+    /// As `renormalised`, then tilted: each times exp(b . direction), with b such that the row's mean direction is the
+    /// lobe's own, less the blur of the pyramid. So light that is linear in direction comes out right, whatever was cut
+    /// off and
+    /// wherever the vertices lie (but for how the blur differs from its mean over all latitudes). (No weight is raised
+    /// above even ones: of GGX's tails what is cut stays
+    /// cut.)
+    matched,
     /// Weights times the area that a vertex stands for, kept where the lobe exceeds threshold x its peak, and
     /// normalised
     /// over what is kept: a constant image stays itself.
@@ -26,7 +33,7 @@ enum class TableWeights {
 
 struct TableSettings {
     double threshold = 0.001; ///< th of eq 14, of the lobe's peak; in (0, 0.3)
-    TableWeights weights = TableWeights::renormalised;
+    TableWeights weights = TableWeights::matched;
     /// A texel sums the coarsest dome that has at least so many vertices in the solid angle 1/peak of its lobe. About 5
     /// makes the paper's cube change domes at smoothness 1/2, 1/4, 1/8 and gives its sizes of table.
     double vertices_a_lobe = 5;

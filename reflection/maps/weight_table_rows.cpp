@@ -97,10 +97,20 @@ double angle_of_chord(double squared_distance) {
     return 2 * std::asin(std::min(1.0, std::sqrt(squared_distance) / 2));
 }
 
+/// Mean of 1 - cosine that reducing the image to a level's pixels and taking it bilinearly blurs by: half the sum of
+/// the variances along a meridian and along a parallel, where pixels are narrower, by 2/3 of the square on the mean. A
+/// hat over pixels of width h has variance h^2/6; the mean over a pixel h^2/12, of which the finest level has none.
+double pyramid_blur(int level) {
+    const auto squared_pixel = [](int width) { return std::pow(2 * kPiDouble / width, 2); };
+    const double h = squared_pixel(kPyramidWidths[level]), finest = squared_pixel(kPyramidWidths[0]);
+    return 0.5 * (1 + 2.0 / 3) * (h / 6 + (h - finest) / 12);
+}
+
 /// One dome, ready to be searched.
 class DomeWeights {
   public:
-    explicit DomeWeights(int level) : dome_(dome_of_level(level).dome), bands_(dome_.directions) {
+    explicit DomeWeights(int level)
+        : dome_(dome_of_level(level).dome), bands_(dome_.directions), blur_(pyramid_blur(level)) {
         triangles_of_.resize(dome_.directions.size());
         for (std::uint32_t t = 0; t < dome_.triangles.size(); ++t)
             for (int corner = 0; corner < 3; ++corner)
@@ -136,9 +146,46 @@ class DomeWeights {
             return interpolate(axis, near, row);
         for (Entry& entry : row)
             entry.weight /= sum;
+        if (settings.weights == TableWeights::matched)
+            match_mean_direction(axis, lobe, reach, row);
     }
 
   private:
+    /// Exponential tilting: of all weights with the wanted mean, those that differ least from the given ones
+    /// (Kullback-Leibler). b by Newton's method, whose matrix is the covariance of the directions.
+    void match_mean_direction(const glm::dvec3& axis, const Lobe& lobe, double reach, std::vector<Entry>& row) const {
+        // In w = 1 - cosine: the cap of the reach has the mean w = reach/4 under even weights.
+        const double wanted_w = std::min(1 - lobe_coefficients(lobe, 2)[1] - blur_, reach / 4);
+        if (wanted_w <= 0 || row.size() < 6)
+            return;
+        constexpr int kMostSteps = 12;
+        constexpr double kEnough = 1e-4; // of the wanted width
+        const std::vector<Entry> before = row;
+        glm::dvec3 tilt(0);
+        for (int step = 0; step < kMostSteps; ++step) {
+            double sum = 0;
+            glm::dvec3 mean(0);
+            glm::dmat3 square(0);
+            for (std::size_t e = 0; e < row.size(); ++e) {
+                const glm::dvec3 apart = dome_.directions[row[e].vertex] - axis;
+                row[e].weight = before[e].weight * std::exp(glm::dot(tilt, apart));
+                sum += row[e].weight;
+                mean += row[e].weight * apart;
+                square += row[e].weight * glm::outerProduct(apart, apart);
+            }
+            mean /= sum;
+            for (Entry& entry : row)
+                entry.weight /= sum;
+            const glm::dvec3 error = -wanted_w * axis - mean;
+            if (glm::dot(error, error) < kEnough * kEnough * wanted_w * wanted_w)
+                return;
+            tilt += glm::inverse(square / sum - glm::outerProduct(mean, mean)) * error;
+            if (!(glm::length(tilt) * std::sqrt(reach) < 50))
+                break;
+        }
+        row = before; // no tilt leads there
+    }
+
     /// Linear interpolation in the triangle around a direction.
     void interpolate(const glm::dvec3& axis, std::vector<std::uint32_t>& near, std::vector<Entry>& row) const {
         near.clear();
@@ -173,6 +220,7 @@ class DomeWeights {
 
     const GeodesicDome& dome_;
     DirectionBands bands_;
+    double blur_; ///< mean of 1 - cosine
     std::vector<std::vector<std::uint32_t>> triangles_of_;
 };
 

@@ -61,6 +61,22 @@ TEST(TableBaker, IsNearBruteForceOnWhatIsSmooth) {
     EXPECT_LT(mean_difference_255(ggx, smooth_surroundings(512, 256), {}), 3) << "its tails are cut off";
 }
 
+TEST(TableBaker, FiltersWhatIsLinearInDirectionAlmostExactlyWhateverIsCutOff) {
+    Environment environment = smooth_surroundings(512, 256);
+    for (int y = 0; y < 256; ++y)
+        for (int x = 0; x < 512; ++x) {
+            const glm::dvec3 d = pixel_direction(x, y, 512, 256);
+            for (int c = 0; c < 3; ++c)
+                environment.remainder.at(x, y)[c] = float(1 + d[glm::length_t(c)]);
+        }
+    const TexelLayout layout = few_texels(LobeKind::phong, {3, 20, 300, 5000});
+    const auto error = [&](TableWeights weights) {
+        return mean_difference_255(layout, environment, {.table = {.threshold = 0.1, .weights = weights}});
+    };
+    EXPECT_LT(error(TableWeights::matched), 0.06); // the pyramid's blur, which is not the same at all latitudes
+    EXPECT_GT(error(TableWeights::renormalised), 0.9);
+}
+
 TEST(TableBaker, FiltersTheLightsThatWereAdded) {
     Environment environment = smooth_surroundings(64, 32);
     DistantLight sun;
