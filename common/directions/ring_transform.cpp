@@ -1,0 +1,271 @@
+#include "common/directions/ring_transform.h"
+#include "common/directions/ring_product.h"
+#include "common/environment/lat_long.h"
+#include "common/services/parallel.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+namespace kokage {
+namespace {
+
+constexpr std::size_t kLanes = BatchFft::kLanes, kElement = BatchFft::kElement;
+constexpr std::size_t kColumns = RingCoefficients::kColumns;
+constexpr std::size_t kOrdersABlock = 8;
+
+std::vector<double> row_polar_angles(int rows) {
+    std::vector<double> polar;
+    for (int j = 0; j < (rows + 1) / 2; ++j)
+        polar.push_back((j + 0.5) / rows * kPiDouble);
+    return polar;
+}
+
+std::vector<double> row_solid_angles(int width, int rows) {
+    std::vector<double> weights;
+    for (int j = 0; j < (rows + 1) / 2; ++j)
+        weights.push_back(pixel_solid_angle(j, width, rows));
+    return weights;
+}
+
+/// Pixels of 16 pairs of rows as sequences: northern row + i southern row. The equator's row has no southern one.
+void gather_rows(const Image& image, float scale, std::size_t first_pair, int channel, float* sequence) {
+    const int pairs = (image.height + 1) / 2;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const int north = int(first_pair + lane), south = image.height - 1 - north;
+        for (int x = 0; x < image.width; ++x) {
+            float* element = sequence + std::size_t(x) * kElement + lane;
+            element[0] = north < pairs ? scale * image.at(x, north)[channel] : 0.f;
+            element[kLanes] = north < pairs && south > north ? scale * image.at(x, south)[channel] : 0.f;
+        }
+    }
+}
+
+} // namespace
+
+RingCoefficients::RingCoefficients(int bands) : bands_(bands) {
+    if (bands < 1)
+        throw std::invalid_argument("RingCoefficients: at least 1 band is needed");
+    std::size_t size = 0;
+    for (int m = 0; m < bands; ++m)
+        for (int parity = 0; parity < 2; ++parity) {
+            first_.push_back(size);
+            size += std::size_t(kColumns) * std::size_t(padded(m, parity));
+        }
+    values_.resize(size);
+}
+
+RingAnalysis::RingAnalysis(int width, int height, int bands)
+    : width_(width), tables_(bands, height, row_polar_angles(height), row_solid_angles(width, height), false,
+                             RingTables::Order::along_bands),
+      fft_(width) {}
+
+void RingAnalysis::transform(const Image& image, float scale, RingCoefficients& coefficients) const {
+    const int bands = tables_.bands();
+    if (image.width != width_ || image.height != tables_.rings() || image.channels < 3 || coefficients.bands() != bands)
+        throw std::invalid_argument("RingAnalysis: the image's size or the bands are not those that it was made for");
+    const auto pairs = std::size_t(tables_.pairs()), orders = std::size_t(bands), width = std::size_t(width_);
+    // Spectra of north + south (for even l - m) and north - south (for odd): [m][parity][pair][kColumns].
+    UninitializedVector<float> spectra(orders * 2 * pairs * kColumns);
+    parallel_blocks(pairs, kLanes, [&](std::size_t begin, std::size_t end) {
+        UninitializedVector<float> sequence(fft_.floats()), scratch(fft_.floats());
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            gather_rows(image, scale, begin, int(channel), sequence.data());
+            const std::span<float> transformed = fft_.forward(sequence, scratch);
+            for (std::size_t m = 0; m < orders; ++m) {
+                // Beyond the image's own waves the spectrum repeats: points of light have no highest wave.
+                const float* positive = transformed.data() + m % width * kElement;
+                const float* negative = transformed.data() + (width - m % width) % width * kElement;
+                for (std::size_t pair = begin; pair < end; ++pair) {
+                    const std::size_t lane = pair - begin;
+                    const float re = positive[lane], im = positive[kLanes + lane], other_re = negative[lane],
+                                other_im = negative[kLanes + lane];
+                    const float north_re = 0.5f * (re + other_re), north_im = 0.5f * (im - other_im);
+                    const float south_re = 0.5f * (im + other_im), south_im = 0.5f * (other_re - re);
+                    float* even = spectra.data() + ((m * 2) * pairs + pair) * kColumns + channel;
+                    float* odd = even + pairs * kColumns;
+                    even[0] = north_re + south_re;
+                    even[3] = north_im + south_im;
+                    odd[0] = north_re - south_re;
+                    odd[3] = north_im - south_im;
+                }
+            }
+        }
+    });
+    parallel_blocks(orders, kOrdersABlock, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t m = begin; m < end; ++m) {
+            // The first pixel's centre is at azimuth (1/2 / width - 1/2) 2 pi.
+            const std::complex<double> turn = std::polar(1.0, -double(m) * (0.5 / width_ - 0.5) * 2 * kPiDouble);
+            const float re = float(turn.real()), im = float(turn.imag());
+            for (int parity = 0; parity < 2; ++parity) {
+                const auto padded = std::size_t(coefficients.padded(int(m), parity));
+                const auto first = std::size_t(tables_.first_pair(int(m)));
+                float* values = coefficients.values(int(m), parity);
+                ring_product(tables_.table(int(m), parity) + first * padded, padded, pairs - std::min(first, pairs),
+                             padded,
+                             {spectra.data() + ((m * 2 + std::size_t(parity)) * pairs + first) * kColumns, kColumns, 1},
+                             values, padded);
+                for (std::size_t i = 0; i < 3 * padded; ++i) {
+                    const float a = values[i], b = values[3 * padded + i];
+                    values[i] = a * re - b * im;
+                    values[3 * padded + i] = a * im + b * re;
+                }
+            }
+        }
+    });
+}
+
+RingGrid::RingGrid(int rings_, int columns_)
+    : rings(rings_), columns(columns_),
+      cells(std::size_t(rings_ + 2 * kRowGuard) * std::size_t(columns_ + 2 * kColumnGuard)) {}
+
+namespace {
+
+/// Values of the four cubic B-splines over a cell, at 0 <= t < 1 from the second's centre.
+std::array<double, 4> spline_weights(double t) {
+    const double s = 1 - t;
+    return {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6};
+}
+
+} // namespace
+
+glm::vec3 RingGrid::lookup(const glm::dvec3& direction) const {
+    double turn = std::atan2(direction.z, direction.x) / (2 * kPiDouble);
+    turn -= std::floor(turn);
+    const double polar = std::atan2(std::hypot(direction.x, direction.z), direction.y);
+    const double x = std::min(turn * columns, double(columns)), y = polar / kPiDouble * rings - 0.5;
+    const int column = int(std::floor(x)), ring = std::min(int(std::floor(y)), rings - 1);
+    const auto across = spline_weights(x - column), down = spline_weights(y - ring);
+    glm::dvec3 sum(0);
+    for (int j = 0; j < 4; ++j)
+        for (int i = 0; i < 4; ++i)
+            sum +=
+                across[std::size_t(i)] * down[std::size_t(j)] * glm::dvec3(glm::vec3(at(ring - 1 + j, column - 1 + i)));
+    return glm::vec3(sum);
+}
+
+RingSynthesis::RingSynthesis(int bands, int rings, int columns)
+    : tables_(bands, rings, row_polar_angles(rings), {}, true, RingTables::Order::along_rings), fft_(columns) {
+    if (columns % 2 != 0 || columns < 2 * bands - 1)
+        throw std::invalid_argument("RingSynthesis: columns must be even and at least twice the bands");
+    for (int m = 0; m < bands; ++m)
+        // 1 over the spectrum of the B-spline's samples 1/6, 4/6, 1/6.
+        order_factors_.push_back(float((m == 0 ? 1 : 0.5) * 6 / (4 + 2 * std::cos(2 * kPiDouble * m / columns))));
+}
+
+namespace {
+
+/// Even and odd parts on 16 pairs of rings -> elements m and columns - m of the sequences north + i south.
+void store_order(const float* even, const float* odd, std::size_t stride, std::size_t channel, float* positive,
+                 float* negative) {
+    const float *even_re = even + channel * stride, *even_im = even + (channel + 3) * stride;
+    const float *odd_re = odd + channel * stride, *odd_im = odd + (channel + 3) * stride;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+        const float north_re = even_re[lane] + odd_re[lane], south_re = even_re[lane] - odd_re[lane];
+        const float north_im = even_im[lane] + odd_im[lane], south_im = even_im[lane] - odd_im[lane];
+        positive[lane] = north_re - south_im;
+        positive[kLanes + lane] = north_im + south_re;
+        if (negative) {
+            negative[lane] = north_re + south_im;
+            negative[kLanes + lane] = south_re - north_im;
+        }
+    }
+}
+
+/// The finished sequences of 16 pairs of rings into the grid's rows.
+void store_rings(const std::array<std::span<float>, 3>& channels, std::size_t first_pair, std::size_t pairs,
+                 RingGrid& grid) {
+    for (std::size_t lane = 0; lane < kLanes && first_pair + lane < pairs; ++lane) {
+        const int north = int(first_pair + lane), south = grid.rings - 1 - north;
+        glm::vec4 *north_row = &grid.at(north, 0), *south_row = &grid.at(south, 0);
+        for (std::size_t x = 0; x < std::size_t(grid.columns); ++x) {
+            const std::size_t at = x * kElement + lane;
+            north_row[x] = glm::vec4(channels[0][at], channels[1][at], channels[2][at], 0.f);
+            if (south > north)
+                south_row[x] =
+                    glm::vec4(channels[0][at + kLanes], channels[1][at + kLanes], channels[2][at + kLanes], 0.f);
+        }
+    }
+}
+
+void fill_guards(RingGrid& grid) {
+    for (int guard = 0; guard < RingGrid::kRowGuard; ++guard)
+        for (int x = 0; x < grid.columns; ++x) {
+            // Over the pole, on the other side.
+            const int opposite = (x + grid.columns / 2) % grid.columns;
+            const int north = std::min(guard, grid.rings - 1), south = std::max(grid.rings - 1 - guard, 0);
+            grid.at(-1 - guard, x) = grid.at(north, opposite);
+            grid.at(grid.rings + guard, x) = grid.at(south, opposite);
+        }
+    for (int ring = -RingGrid::kRowGuard; ring < grid.rings + RingGrid::kRowGuard; ++ring)
+        for (int guard = 0; guard < RingGrid::kColumnGuard; ++guard) {
+            grid.at(ring, grid.columns + guard) = grid.at(ring, guard);
+            grid.at(ring, -1 - guard) = grid.at(ring, grid.columns - 1 - guard);
+        }
+}
+
+} // namespace
+
+void RingSynthesis::transform(const RingCoefficients& coefficients, std::span<const double> zonal, float scale,
+                              RingGrid& grid) const {
+    const int bands = std::min({int(zonal.size()), coefficients.bands(), tables_.bands()});
+    if (zonal.size() > std::size_t(tables_.bands()) || grid.rings != rings() || grid.columns != columns())
+        throw std::invalid_argument("RingSynthesis: more bands or another grid than it was made for");
+    const auto padded_pairs = std::size_t(tables_.padded_pairs()), columns = std::size_t(fft_.length());
+    const std::size_t batches = padded_pairs / kLanes, orders = std::size_t(bands);
+    // [batch][channel][column], ready for the transform along azimuth
+    UninitializedVector<float> spectra(batches * 3 * columns * kElement);
+    auto element = [&](std::size_t batch, std::size_t channel, std::size_t column) {
+        return spectra.data() + ((batch * 3 + channel) * columns + column) * kElement;
+    };
+    parallel_blocks(orders, kOrdersABlock, [&](std::size_t begin, std::size_t end) {
+        std::vector<float> columns_of_l, parts(2 * kColumns * padded_pairs);
+        for (std::size_t m = begin; m < end; ++m) {
+            const auto first = std::size_t(tables_.first_pair(int(m)));
+            for (int parity = 0; parity < 2; ++parity) {
+                const std::size_t count =
+                    m + std::size_t(parity) < orders ? (orders - m - std::size_t(parity) + 1) / 2 : 0;
+                const auto padded = std::size_t(coefficients.padded(int(m), parity));
+                const float* values = coefficients.values(int(m), parity);
+                columns_of_l.resize(kColumns * count);
+                for (std::size_t c = 0; c < kColumns; ++c)
+                    for (std::size_t i = 0; i < count; ++i)
+                        columns_of_l[c * count + i] = values[c * padded + i] * scale * order_factors_[m] *
+                                                      float(zonal[m + std::size_t(parity) + 2 * i]);
+                float* part = parts.data() + std::size_t(parity) * kColumns * padded_pairs;
+                ring_product(tables_.table(int(m), parity) + first, padded_pairs, count, padded_pairs - first,
+                             {columns_of_l.data(), 1, count}, part + first, padded_pairs);
+            }
+            for (std::size_t batch = 0; batch < batches; ++batch)
+                for (std::size_t channel = 0; channel < 3; ++channel) {
+                    float* positive = element(batch, channel, m);
+                    float* negative = m > 0 ? element(batch, channel, columns - m) : nullptr;
+                    if (batch * kLanes < first) {
+                        std::fill_n(positive, kElement, 0.f);
+                        std::fill_n(negative, kElement, 0.f);
+                    } else {
+                        const float* even = parts.data() + batch * kLanes;
+                        store_order(even, even + kColumns * padded_pairs, padded_pairs, channel, positive, negative);
+                    }
+                }
+        }
+    });
+    parallel_blocks(batches, 1, [&](std::size_t begin, std::size_t end) {
+        UninitializedVector<float> scratch(3 * fft_.floats());
+        for (std::size_t batch = begin; batch < end; ++batch) {
+            std::array<std::span<float>, 3> transformed;
+            for (std::size_t channel = 0; channel < 3; ++channel) {
+                std::fill(element(batch, channel, orders), element(batch, channel, columns - orders + 1), 0.f);
+                transformed[channel] =
+                    fft_.backward(std::span(element(batch, channel, 0), fft_.floats()),
+                                  std::span(scratch).subspan(channel * fft_.floats(), fft_.floats()));
+            }
+            store_rings(transformed, batch * kLanes, std::size_t(tables_.pairs()), grid);
+        }
+    });
+    fill_guards(grid);
+}
+
+} // namespace kokage

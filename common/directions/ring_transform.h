@@ -1,0 +1,128 @@
+#pragma once
+// Spherical-harmonic transforms of hundreds of bands in milliseconds: azimuth by Fourier transform, then for each order
+// m a product with a table of Legendre functions that is prepared once (Driscoll and Healy 1994 and their successors;
+// Schaeffer 2013, "Efficient spherical harmonic transforms aimed at pseudospectral numerical simulations", for the
+// pairing of northern and southern rings). Single precision: errors a few 1e-6 of the largest value.
+//
+// Inside, the polar axis is world +Y, so that the rings are the rows of a lat-long image (lat_long.h); azimuth =
+// atan2(z, x).
+#include "common/directions/batch_fft.h"
+#include "common/scene/image.h"
+#include "common/services/uninitialized_vector.h"
+#include "common/types.h"
+
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kokage {
+
+/// Complex coefficients c_lm, m >= 0, of a real function of three channels:
+///     f = Re sum over l < bands, m <= l of P_lm(y) c_lm e^(i m azimuth),   P_lm(y) = N_lm(y) (1 - y^2)^(m/2)
+/// with N_lm of legendre.h: c_lm = a_lm - i b_lm of the real harmonics of orders m and -m (spherical_harmonics.h) taken
+/// at (x, z, y).
+class RingCoefficients {
+  public:
+    /// Numbers of one order and one parity of l - m stand together, padded to whole vectors.
+    static constexpr int kPad = 16;
+    static constexpr int kColumns = 6; ///< real r, g, b, imaginary r, g, b
+
+    explicit RingCoefficients(int bands);
+    int bands() const { return bands_; }
+    /// How many l = m + parity, m + parity + 2, ... there are.
+    int count(int m, int parity) const { return (bands_ - m - parity + 1) / 2; }
+    int padded(int m, int parity) const { return (count(m, parity) + kPad - 1) / kPad * kPad; }
+    /// kColumns runs of padded() floats.
+    float* values(int m, int parity) { return values_.data() + first_[std::size_t(2 * m + parity)]; }
+    const float* values(int m, int parity) const { return values_.data() + first_[std::size_t(2 * m + parity)]; }
+
+  private:
+    int bands_;
+    std::vector<std::size_t> first_;
+    std::vector<float> values_;
+};
+
+/// Tables of P_lm on rings that lie symmetrically about the equator.
+class RingTables {
+  public:
+    enum class Order { along_bands, along_rings }; ///< what stands together: for analysis, for synthesis
+    /// `polar`: polar angles of the northern rings, ascending, the equator (pi/2) last if `rings` is odd. `weights`:
+    /// what each ring's functions are multiplied by; empty = 1. `spline`: the functions' cubic B-spline coefficients
+    /// along the meridian instead of their values; the rings must then be (j + 1/2) pi / rings.
+    RingTables(int bands, int rings, std::span<const double> polar, std::span<const double> weights, bool spline,
+               Order order);
+    int bands() const { return bands_; }
+    int rings() const { return rings_; }
+    int pairs() const { return (rings_ + 1) / 2; } ///< of a northern and a southern ring; the equator is its own
+    int padded_pairs() const { return (pairs() + 15) / 16 * 16; }
+    /// along_bands: [pair][l of that parity, padded to 16]; along_rings: [l of that parity][padded_pairs()].
+    const float* table(int m, int parity) const { return values_.data() + first_[std::size_t(2 * m + parity)]; }
+    /// Pairs before this one are so near the pole that order m vanishes there; a multiple of 16.
+    int first_pair(int m) const { return first_pair_[std::size_t(m)]; }
+    std::size_t bytes() const { return values_.size() * sizeof(float); }
+
+  private:
+    int bands_, rings_;
+    std::vector<std::size_t> first_;
+    std::vector<int> first_pair_;
+    UninitializedVector<float> values_;
+};
+
+/// From a lat-long image to coefficients: every pixel is a point of light at its centre with its exact solid angle, as
+/// sums over pixels take it. (projection.h integrates over pixels instead.)
+class RingAnalysis {
+  public:
+    RingAnalysis(int width, int height, int bands);
+    /// `image` has that size and at least 3 channels; values are multiplied by `scale` first. The same bits with any
+    /// number of threads.
+    void transform(const Image& image, float scale, RingCoefficients& coefficients) const;
+    std::size_t bytes() const { return tables_.bytes(); }
+
+  private:
+    int width_;
+    RingTables tables_;
+    BatchFft fft_;
+};
+
+/// A function on rings (j + 1/2) pi / rings and columns at azimuth 2 pi i / columns, as coefficients of a cubic
+/// B-spline in both: what is read between them is smooth, and far more exact than by cubic interpolation of values
+/// (error of a wave of w radians a cell: about 1.4 (w / 2 pi)^4). Guards on all sides, so that a read needs no test.
+struct RingGrid {
+    static constexpr int kRowGuard = 2, kColumnGuard = 4;
+    int rings = 0, columns = 0;
+    UninitializedVector<glm::vec4> cells; ///< rgb and an unused fourth
+
+    RingGrid(int rings_, int columns_);
+    int stride() const { return columns + 2 * kColumnGuard; }
+    /// ring -2 ... rings + 1, column -4 ... columns + 3
+    const glm::vec4& at(int ring, int column) const {
+        return cells[std::size_t(ring + kRowGuard) * std::size_t(stride()) + std::size_t(column + kColumnGuard)];
+    }
+    glm::vec4& at(int ring, int column) {
+        return cells[std::size_t(ring + kRowGuard) * std::size_t(stride()) + std::size_t(column + kColumnGuard)];
+    }
+    /// The slow way to read it.
+    glm::vec3 lookup(const glm::dvec3& direction) const;
+};
+
+/// From coefficients to a grid.
+class RingSynthesis {
+  public:
+    /// columns even and >= 2 bands - 1.
+    RingSynthesis(int bands, int rings, int columns);
+    int bands() const { return tables_.bands(); }
+    int rings() const { return tables_.rings(); }
+    int columns() const { return fft_.length(); }
+    /// f convolved with a zonal function, whose zonal coefficients (zonal.h) are `zonal`: at most bands() of them.
+    /// Everything is multiplied by `scale`.
+    void transform(const RingCoefficients& coefficients, std::span<const double> zonal, float scale,
+                   RingGrid& grid) const;
+    std::size_t bytes() const { return tables_.bytes(); }
+
+  private:
+    RingTables tables_;
+    BatchFft fft_;
+    std::vector<float> order_factors_; ///< of the spline along azimuth, and 1/2 for the two sides of m > 0
+};
+
+} // namespace kokage
