@@ -45,19 +45,6 @@ double reach_beyond(const Lobe& lobe, double nearest, double share) {
     return lobe_reach(lobe, share * lobe_value(lobe, nearest) / lobe_value(lobe, 0));
 }
 
-glm::dvec3 filtered_image(const LatLongPlanes& planes, const Lobe& lobe, const glm::dvec3& direction) {
-    const double largest_pixel = planes.row_angle[planes.row_angle.size() / 2];
-    const LobeSums sums = sum_over_lobe(planes, lobe, direction, lobe_reach(lobe, kLeastShare), 0);
-    if (sums.weight > kThinlySampled * largest_pixel)
-        return sums.radiance / sums.weight;
-    const NearestPixel nearest = nearest_pixel(planes, direction);
-    if (nearest.squared_distance >= 2)
-        return planes.pixel(nearest.x, nearest.y);
-    const LobeSums relative = sum_over_lobe(
-        planes, lobe, direction, reach_beyond(lobe, nearest.squared_distance, kLeastShare), nearest.squared_distance);
-    return relative.radiance / relative.weight;
-}
-
 glm::vec3 as_float(const glm::dvec3& value) {
     return glm::vec3(glm::min(value, glm::dvec3(double(std::numeric_limits<float>::max()))));
 }
@@ -92,7 +79,7 @@ class BruteForceBaker final : public Baker {
     glm::vec3 texel(std::span<const DistantLight> lights, std::size_t i) const {
         const Lobe lobe{layout_.kind, double(layout_.parameters[i])};
         const glm::dvec3 direction = glm::normalize(glm::dvec3(layout_.directions[i]));
-        glm::dvec3 radiance = filtered_image(planes_, lobe, direction);
+        glm::dvec3 radiance = filtered_image(planes_, lobe, direction, kLeastShare);
         for (const DistantLight& light : lights)
             radiance += light_through_lobe(light, lobe, direction);
         return as_float(radiance);
@@ -103,6 +90,20 @@ class BruteForceBaker final : public Baker {
 };
 
 } // namespace
+
+glm::dvec3 filtered_image(const LatLongPlanes& planes, const Lobe& lobe, const glm::dvec3& direction,
+                          double least_share) {
+    const double largest_pixel = planes.row_angle[planes.row_angle.size() / 2];
+    const LobeSums sums = sum_over_lobe(planes, lobe, direction, lobe_reach(lobe, least_share), 0);
+    if (sums.weight > kThinlySampled * largest_pixel)
+        return sums.radiance / sums.weight;
+    const NearestPixel nearest = nearest_pixel(planes, direction);
+    if (nearest.squared_distance >= 2)
+        return planes.pixel(nearest.x, nearest.y);
+    const LobeSums relative = sum_over_lobe(
+        planes, lobe, direction, reach_beyond(lobe, nearest.squared_distance, least_share), nearest.squared_distance);
+    return relative.radiance / relative.weight;
+}
 
 std::unique_ptr<Baker> brute_force_baker(const TexelLayout& layout, int image_width, int image_height) {
     return std::make_unique<BruteForceBaker>(layout, image_width, image_height);

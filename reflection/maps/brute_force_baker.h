@@ -1,6 +1,7 @@
 #pragma once
 // The truth that the other bakers are held against: [R] eqs 8 and 9, for any lobe.
 #include "reflection/maps/baker.h"
+#include "reflection/maps/lat_long_sums.h"
 
 namespace kokage {
 
@@ -13,5 +14,9 @@ std::unique_ptr<Baker> brute_force_baker(const TexelLayout& layout, int image_wi
 
 /// One texel of it, pixel by pixel with nothing left out: the obvious twin.
 glm::dvec3 filtered_by_brute_force(const Environment& surroundings, const Lobe& lobe, const glm::dvec3& direction);
+
+/// The image's part of a texel, by vectors; pixels whose weight is below `least_share` of the lobe's peak are left out.
+glm::dvec3 filtered_image(const LatLongPlanes& planes, const Lobe& lobe, const glm::dvec3& direction,
+                          double least_share);
 
 } // namespace kokage

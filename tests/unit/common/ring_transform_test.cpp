@@ -158,8 +158,6 @@ TEST(RingSynthesis, IsTheSeriesOnTheRingsAndBetweenThem) {
         }
         EXPECT_LT(on_rings, 1e-5) << rings;
         EXPECT_LT(between, rings == 200 ? 2e-5 : rings == 75 ? 5e-4 : 5e-3) << rings;
-        RecordProperty("between_" + std::to_string(rings), std::to_string(between));
-        printf("rings %d on %.2e between %.2e\n", rings, on_rings, between);
     }
 }
 

@@ -1,0 +1,158 @@
+#include "reflection/maps/spectral_plan.h"
+#include "common/types.h"
+#include "reflection/maps/shell_map.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace kokage {
+namespace {
+
+constexpr int kMostBands = 512;
+constexpr double kLeastPixels = 0.7; ///< standard width of a lobe in harmonics
+constexpr double kLargestOverRms = 5;
+constexpr double kShare = 1.0 / 3; ///< of the tolerance, for each of: bands, grids, interpolation between shells
+
+/// A length that transforms fast, and even.
+bool is_fast(int n) {
+    if (n % 2 != 0)
+        return false;
+    for (const int factor : {2, 3, 5})
+        while (n % factor == 0)
+            n /= factor;
+    return n == 1;
+}
+
+std::vector<float> distinct(const std::vector<float>& values) {
+    std::vector<float> sorted = values;
+    std::sort(sorted.begin(), sorted.end());
+    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+    return sorted;
+}
+
+} // namespace
+
+double SpectralPlan::lobe_width(float parameter) const {
+    return std::log(std::max(lobe_spread({kind_, double(parameter)}), 1e-30));
+}
+
+namespace {
+
+/// Variance of band l of the image that errors are estimated for.
+double band_variance(int l, double noise) {
+    return 0.044 / (l + 1) + noise * l;
+}
+
+} // namespace
+
+int SpectralPlan::bands_needed(const Lobe& lobe) const {
+    const double allowed = kShare * tolerance_ / kLargestOverRms;
+    for (int tried = std::min(64, most_bands_);; tried = std::min(2 * tried, most_bands_)) {
+        const std::vector<double> k = lobe_coefficients(lobe, tried);
+        double tail = 0;
+        int needed = tried;
+        for (; needed > 1; --needed) {
+            const double value = k[std::size_t(needed) - 1];
+            tail += band_variance(needed - 1, noise_) * value * value;
+            if (tail > allowed * allowed)
+                break;
+        }
+        if (2 * needed <= tried || tried == most_bands_)
+            return needed;
+    }
+}
+
+int SpectralPlan::rings_needed(std::span<const double> zonal) const {
+    const double allowed = kShare * tolerance_ / kLargestOverRms;
+    const int bands = int(zonal.size());
+    for (int rings = std::max(bands, 8);; ++rings) {
+        if (!is_fast(2 * rings) || rings % 2 != 0)
+            continue;
+        double sum = 0;
+        for (int l = 0; l < bands; ++l) {
+            const double error = 1.4 * std::pow(0.5 * l / rings, 4) * zonal[std::size_t(l)];
+            sum += 2 * band_variance(l, noise_) * error * error;
+        }
+        if (sum <= allowed * allowed)
+            return rings;
+    }
+}
+
+void SpectralPlan::add_shell(const Lobe& lobe) {
+    SpectralShell shell{lobe, lobe_coefficients(lobe, bands_needed(lobe)), 0};
+    shell.rings = rings_needed(shell.zonal);
+    shells_.push_back(std::move(shell));
+}
+
+SpectralPlan::SpectralPlan(const TexelLayout& layout, int image_width, int image_height, double tolerance)
+    : kind_(layout.kind), tolerance_(tolerance),
+      noise_(2 / (double(image_width) * image_height)), // of points of light, one a pixel, of mean square 1
+      most_bands_(kMostBands) {
+    const std::vector<float> parameters = distinct(layout.parameters);
+    // The narrowest lobe that the bands suffice for: the width at which they no longer do, by bisection. (Very wide
+    // Phong lobes need many bands too, for the edge of their half sphere; those are cut off.)
+    auto suffices = [&](double width) {
+        return bands_needed(lobe_of_spread(kind_, std::exp(width))) < most_bands_ - 1;
+    };
+    double narrow = std::log(1e-9), wide = std::log(0.1);
+    if (!suffices(wide))
+        narrow = wide = std::numeric_limits<double>::infinity();
+    while (wide - narrow > 1e-3) {
+        const double middle = 0.5 * (narrow + wide);
+        (suffices(middle) ? wide : narrow) = middle;
+    }
+    // Nor one that is not wider than the pixels are apart.
+    const double pixel = std::max(kPiDouble / image_height, 2 * kPiDouble / image_width);
+    least_width_ = std::max(wide, 2 * std::log(kLeastPixels * pixel));
+    std::vector<float> spectral;
+    for (const float parameter : parameters)
+        if (!is_direct(parameter))
+            spectral.push_back(parameter);
+    if (spectral.empty())
+        return;
+    std::sort(spectral.begin(), spectral.end(), [&](float a, float b) { return lobe_width(a) > lobe_width(b); });
+    widest_ = lobe_width(spectral.front());
+    const double range = widest_ - lobe_width(spectral.back());
+    const auto intervals = std::size_t(std::max(3.0, std::ceil(range / std::log(1.4))));
+    if (spectral.size() <= intervals + 1) {
+        for (const float parameter : spectral)
+            add_shell({kind_, double(parameter)});
+        parameters_ = spectral;
+        return;
+    }
+    shells_a_texel_ = ShellMix::kMost;
+    step_ = range / double(intervals);
+    for (std::size_t i = 0; i <= intervals; ++i)
+        add_shell(lobe_of_spread(kind_, std::exp(widest_ - step_ * double(i))));
+}
+
+int SpectralPlan::bands() const {
+    std::size_t most = 0;
+    for (const SpectralShell& shell : shells_)
+        most = std::max(most, shell.zonal.size());
+    return int(most);
+}
+
+ShellMix SpectralPlan::mix(float parameter) const {
+    ShellMix mix;
+    if (shells_a_texel_ == 1) {
+        const auto found = std::find(parameters_.begin(), parameters_.end(), parameter);
+        mix.first = std::size_t(found - parameters_.begin());
+        mix.weights[0] = 1;
+        return mix;
+    }
+    // Lagrange's cubic through four neighbours, in the logarithm of the width.
+    const double place = std::max(0.0, (widest_ - lobe_width(parameter)) / step_);
+    mix.first = std::min(std::size_t(std::max(0.0, std::floor(place) - 1)), shells_.size() - ShellMix::kMost);
+    for (std::size_t i = 0; i < ShellMix::kMost; ++i) {
+        double weight = 1;
+        for (std::size_t j = 0; j < ShellMix::kMost; ++j)
+            if (j != i)
+                weight *= (place - double(mix.first) - double(j)) / (double(i) - double(j));
+        mix.weights[i] = float(weight);
+    }
+    return mix;
+}
+
+} // namespace kokage

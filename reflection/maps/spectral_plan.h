@@ -1,0 +1,59 @@
+#pragma once
+// Which lobes the spectral baker filters by, on grids of which size, and how each texel's lobe is put together from
+// them.
+#include "reflection/maps/texel_layout.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+namespace kokage {
+
+/// One lobe and the grid that holds everything filtered by it.
+struct SpectralShell {
+    Lobe lobe;
+    std::vector<double> zonal; ///< its coefficients; their number is the bands that it needs
+    int rings = 0;             ///< of its grid; twice as many columns
+};
+
+/// Up to four neighbouring shells and their weights.
+struct ShellMix {
+    static constexpr std::size_t kMost = 4;
+    std::size_t first = 0;
+    std::array<float, kMost> weights{};
+};
+
+/// Errors are estimated for an image of values in [0, 1] that has as much contrast as such an image can have (variance
+/// 1/4, the same in each octave) and noise in its pixels besides.
+class SpectralPlan {
+  public:
+    /// `tolerance`: of the largest error, which is taken as five times the root mean square.
+    SpectralPlan(const TexelLayout& layout, int image_width, int image_height, double tolerance);
+
+    /// From wide lobes to narrow ones.
+    const std::vector<SpectralShell>& shells() const { return shells_; }
+    /// 1: every texel's lobe is one of the shells'; else interpolated between that many neighbours.
+    std::size_t shells_a_texel() const { return shells_a_texel_; }
+    int bands() const; ///< the most of any shell
+    /// A lobe so narrow that the image's pixels show through it, or that needs more bands than there is room for, is
+    /// summed pixel by pixel.
+    bool is_direct(float parameter) const { return lobe_width(parameter) < least_width_; }
+    ShellMix mix(float parameter) const;
+
+  private:
+    double lobe_width(float parameter) const; ///< logarithm of its variance
+    int bands_needed(const Lobe& lobe) const;
+    int rings_needed(std::span<const double> zonal) const;
+    void add_shell(const Lobe& lobe);
+
+    LobeKind kind_;
+    double tolerance_, noise_;
+    int most_bands_;
+    double least_width_ = 0, widest_ = 0, step_ = 1;
+    std::size_t shells_a_texel_ = 1;
+    std::vector<float> parameters_; ///< of the shells, where every texel's lobe is one of them; ascending in width
+    std::vector<SpectralShell> shells_;
+};
+
+} // namespace kokage

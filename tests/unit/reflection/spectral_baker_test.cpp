@@ -1,0 +1,290 @@
+#include "common/directions/ring_transform.h"
+#include "common/environment/split_lights.h"
+#include "common/services/error.h"
+#include "common/services/parallel.h"
+#include "common/services/random.h"
+#include "reflection/maps/brute_force_baker.h"
+#include "reflection/maps/lobe_lights.h"
+#include "reflection/maps/shell_map.h"
+#include "reflection/maps/spectral_baker.h"
+#include "reflection/maps/spectral_plan.h"
+#include "reflection/maps/spectral_read.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+#include <limits>
+
+using namespace kokage;
+
+namespace {
+
+glm::vec3 some_direction(Random& random) {
+    const double height = 2 * random.uniform_double() - 1, azimuth = 2 * kPiDouble * random.uniform_double(),
+                 sine = std::sqrt(1 - height * height);
+    return glm::vec3(sine * std::cos(azimuth), height, sine * std::sin(azimuth));
+}
+
+/// Texels in all directions, the poles among them, with parameters spread evenly by their logarithm.
+TexelLayout scattered(LobeKind kind, double least, double most, std::size_t count, std::uint64_t seed = 1) {
+    TexelLayout layout;
+    layout.kind = kind;
+    Random random(seed);
+    const glm::vec3 poles[] = {{0, 1, 0}, {0, -1, 0}, {-1, 0, 0}, {-1, 0, -1e-8f}, {1e-5f, 1, 0}};
+    for (std::size_t i = 0; i < count; ++i) {
+        layout.directions.push_back(i < std::size(poles) ? poles[i] : some_direction(random));
+        layout.parameters.push_back(float(least * std::pow(most / least, random.uniform_double())));
+    }
+    return layout;
+}
+
+/// Hue once round across, saturation downwards, lightness 1/2.
+Image colour_pattern(int width, int height) {
+    Image image(width, height, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const double k = std::fmod(8.0 - 4 * c + 4 + (x + 0.5) / width * 12, 12),
+                             half = 0.5 * (y + 0.5) / height;
+                image.at(x, y)[c] = float(0.5 - half * std::max(-1.0, std::min({k - 3, 9 - k, 1.0})));
+            }
+    return image;
+}
+
+Image noise(int width, int height, std::uint64_t seed) {
+    Image image(width, height, 3);
+    Random random(seed);
+    for (float& value : image.pixels)
+        value = random.uniform();
+    return image;
+}
+
+struct Baked {
+    std::vector<glm::vec3> filtered;
+    WorkReport report;
+    bool said(std::string_view skip) const {
+        for (const WorkReport::Skip& s : report.skips)
+            if (s.what.find(skip) != std::string::npos)
+                return true;
+        return false;
+    }
+};
+
+Baked bake(const TexelLayout& layout, const Environment& environment, const SpectralSettings& settings = {}) {
+    Baked baked;
+    baked.filtered.assign(layout.size(), glm::vec3(std::numeric_limits<float>::quiet_NaN()));
+    spectral_baker(layout, environment.remainder.width, environment.remainder.height, settings, baked.report)
+        ->bake(environment, baked.filtered, baked.report);
+    return baked;
+}
+
+std::vector<glm::vec3> truth(const TexelLayout& layout, const Environment& environment) {
+    std::vector<glm::vec3> filtered(layout.size());
+    WorkReport report;
+    brute_force_baker(layout, environment.remainder.width, environment.remainder.height)
+        ->bake(environment, filtered, report);
+    return filtered;
+}
+
+struct Errors {
+    double largest = 0, largest_relative = 0, least = 0;
+};
+
+/// Relative errors by a denominator of at least `floor`.
+Errors errors(const std::vector<glm::vec3>& a, const std::vector<glm::vec3>& b, double floor = 1) {
+    Errors errors;
+    for (std::size_t i = 0; i < a.size(); ++i)
+        for (glm::length_t c = 0; c < 3; ++c) {
+            const double error = std::abs(double(a[i][c]) - double(b[i][c]));
+            // So that a NaN is the largest error.
+            if (!(error <= errors.largest))
+                errors.largest = error;
+            if (const double relative = error / std::max(double(b[i][c]), floor);
+                !(relative <= errors.largest_relative))
+                errors.largest_relative = relative;
+            errors.least = std::min(errors.least, double(a[i][c]));
+        }
+    return errors;
+}
+
+Environment surroundings(Image image) {
+    Environment environment;
+    environment.remainder = std::move(image);
+    return environment;
+}
+
+TEST(SpectralBaker, IsTheBruteForceWithinItsTolerance) {
+    for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx}) {
+        const bool phong = kind == LobeKind::phong;
+        const TexelLayout layout = phong ? scattered(kind, 0.3, 2000, 1200) : scattered(kind, 0.2, 1, 1200);
+        for (const bool pattern : {true, false}) {
+            const Environment environment = surroundings(pattern ? colour_pattern(256, 128) : noise(256, 128, 3));
+            const Errors found = errors(bake(layout, environment).filtered, truth(layout, environment));
+            EXPECT_LT(found.largest, pattern ? 1.5e-4 : 2e-4)
+                << lobe_kind_name(kind) << (pattern ? " pattern" : " noise");
+        }
+    }
+}
+
+TEST(SpectralBaker, AFewLobesAreExactShells) {
+    TexelLayout layout = scattered(LobeKind::ggx, 0.25, 1, 800);
+    for (std::size_t i = 0; i < layout.size(); ++i)
+        layout.parameters[i] = 0.25f * float(1 + i * 4 / layout.size());
+    const SpectralPlan plan(layout, 256, 128, 1e-4);
+    EXPECT_EQ(plan.shells().size(), 4u);
+    EXPECT_EQ(plan.shells_a_texel(), 1u);
+    const Environment environment = surroundings(colour_pattern(256, 128));
+    EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 1e-4);
+}
+
+TEST(SpectralBaker, SmallerToleranceSmallerError) {
+    const TexelLayout layout = scattered(LobeKind::phong, 5, 1000, 600);
+    const Environment environment = surroundings(noise(128, 64, 5));
+    const std::vector<glm::vec3> right = truth(layout, environment);
+    double before = 1;
+    for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
+        const double error = errors(bake(layout, environment, {tolerance, {}}).filtered, right).largest;
+        EXPECT_LT(error, 3 * tolerance);
+        EXPECT_LT(error, before);
+        before = error;
+    }
+}
+
+TEST(SpectralBaker, ASunIsALobeAndNothingIsNegative) {
+    Image image = noise(256, 128, 7);
+    for (int c = 0; c < 3; ++c)
+        image.at(70, 40)[c] = 1e6f;
+    const Environment environment = surroundings(std::move(image));
+    const double mean = luminance_integral(environment.remainder) / (4 * kPiDouble);
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 2000, 3000);
+    const Baked baked = bake(layout, environment);
+    const Errors found = errors(baked.filtered, truth(layout, environment), 1e-3 * mean);
+    EXPECT_LT(found.largest_relative, 3e-3);
+    EXPECT_GE(found.least, 0);
+}
+
+TEST(SpectralBaker, LightsOfTheUserAreFilteredToo) {
+    Environment environment = surroundings(colour_pattern(128, 64));
+    environment.distant_lights.push_back({"sun", glm::normalize(glm::vec3(1, 2, 3)), 0.00465f, glm::vec3(3, 2, 1), {}});
+    environment.distant_lights.push_back({"lamp", glm::normalize(glm::vec3(-1, 1, 0)), 0.3f, glm::vec3(1), {}});
+    environment.distant_lights.push_back({"star", glm::vec3(0, -1, 0), 0, glm::vec3(0.2f), {}});
+    for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx}) {
+        const TexelLayout layout =
+            kind == LobeKind::phong ? scattered(kind, 1, 500, 500) : scattered(kind, 0.3, 1, 500);
+        const std::vector<glm::vec3> right = truth(layout, environment);
+        EXPECT_LT(errors(bake(layout, environment).filtered, right, 1).largest_relative, 1e-3) << lobe_kind_name(kind);
+    }
+}
+
+TEST(SpectralBaker, LobesTooNarrowForTheImageAreSummedPixelByPixel) {
+    const Environment environment = surroundings(noise(64, 32, 9));
+    const TexelLayout layout = scattered(LobeKind::phong, 10, 1e5, 800);
+    const SpectralPlan plan(layout, 64, 32, 1e-4);
+    EXPECT_TRUE(plan.is_direct(2e4f));
+    EXPECT_FALSE(plan.is_direct(20));
+    EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 2e-4);
+}
+
+TEST(SpectralBaker, ImagesOfAnyShape) {
+    const TexelLayout layout = scattered(LobeKind::phong, 0.3, 3000, 300);
+    for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 1}, {1, 2}, {3, 5}, {97, 31}, {40, 40}, {20, 90}}) {
+        const Environment environment = surroundings(noise(size.x, size.y, 4));
+        EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 4e-4)
+            << size.x << "x" << size.y;
+    }
+}
+
+TEST(SpectralBaker, OneColourNeedsOneBandAndSaysSo) {
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 1000, 100);
+    Image image(64, 32, 3);
+    for (const float value : {0.f, 0.7f, 1e30f}) {
+        std::fill(image.pixels.begin(), image.pixels.end(), value);
+        const Baked baked = bake(layout, surroundings(image));
+        EXPECT_TRUE(baked.said("first band"));
+        for (const glm::vec3& texel : baked.filtered)
+            EXPECT_EQ(texel, glm::vec3(value));
+    }
+}
+
+TEST(SpectralBaker, EnormousAndTinyPixelsStayFinite) {
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 3000, 300);
+    for (const float scale : {1e-30f, 1e30f}) {
+        Image image = noise(128, 64, 2);
+        for (float& value : image.pixels)
+            value *= scale;
+        const Environment environment = surroundings(std::move(image));
+        EXPECT_LT(
+            errors(bake(layout, environment).filtered, truth(layout, environment), double(scale)).largest_relative,
+            3e-4);
+    }
+    Image image = noise(128, 64, 2);
+    image.at(5, 5)[0] = 1e30f;
+    const Environment environment = surroundings(std::move(image));
+    const double mean = luminance_integral(environment.remainder) / (4 * kPiDouble);
+    EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment), 1e-3 * mean).largest_relative,
+              3e-3);
+}
+
+TEST(SpectralBaker, RefusesWhatItWasNotMadeFor) {
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 100, 10);
+    WorkReport report;
+    const auto baker = spectral_baker(layout, 32, 16, {}, report);
+    std::vector<glm::vec3> filtered(layout.size());
+    EXPECT_THROW(baker->bake(surroundings(noise(16, 8, 1)), filtered, report), InputError);
+    filtered.pop_back();
+    EXPECT_THROW(baker->bake(surroundings(noise(32, 16, 1)), filtered, report), InputError);
+    filtered.resize(layout.size());
+    for (const float bad : {-1.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
+        Image image = noise(32, 16, 1);
+        image.at(3, 4)[1] = bad;
+        EXPECT_THROW(baker->bake(surroundings(std::move(image)), filtered, report), InputError);
+    }
+}
+
+TEST(SpectralBaker, SameBitsWithAnyNumberOfThreadsAndFrameAfterFrame) {
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 1000, 9000);
+    Image image = noise(128, 64, 2);
+    image.at(5, 5)[0] = 1e4f;
+    const Environment environment = surroundings(std::move(image)), other = surroundings(noise(128, 64, 8));
+    set_thread_count(1);
+    const std::vector<glm::vec3> one = bake(layout, environment).filtered;
+    set_thread_count(0);
+    WorkReport report;
+    const auto baker = spectral_baker(layout, 128, 64, {}, report);
+    std::vector<glm::vec3> filtered(layout.size());
+    baker->bake(other, filtered, report);
+    baker->bake(environment, filtered, report);
+    EXPECT_EQ(filtered, one);
+}
+
+TEST(ReadTexels, IsTheSplineThere) {
+    const int bands = 12;
+    RingCoefficients coefficients(bands);
+    RingAnalysis(24, 12, bands).transform(noise(24, 12, 1), 1, coefficients);
+    std::vector<RingGrid> grids;
+    for (const int rings : {12, 20, 24, 30}) {
+        grids.emplace_back(rings, 2 * rings);
+        RingSynthesis(bands, rings, 2 * rings)
+            .transform(coefficients, std::vector<double>(std::size_t(bands), 1.0), 1, grids.back());
+    }
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 2, 500);
+    Random random(3);
+    for (const std::size_t grids_a_texel : {1u, 4u}) {
+        std::vector<TexelPlace> places;
+        std::vector<glm::vec3> slow, fast(layout.size());
+        for (std::size_t i = 0; i < layout.size(); ++i) {
+            ShellMix mix;
+            mix.first = grids_a_texel == 1 ? random.below(4) : 0;
+            glm::vec3 sum(0);
+            for (std::size_t k = 0; k < grids_a_texel; ++k) {
+                mix.weights[k] = random.uniform();
+                sum += mix.weights[k] * grids[mix.first + k].lookup(glm::normalize(glm::dvec3(layout.directions[i])));
+            }
+            places.push_back(texel_place(layout.directions[i], mix, std::uint32_t(i)));
+            slow.push_back(glm::max(2.f * sum, glm::vec3(0)));
+        }
+        read_texels(places, grids, grids_a_texel, 2, fast);
+        EXPECT_LT(errors(fast, slow).largest, 3e-5);
+    }
+}
+
+} // namespace
