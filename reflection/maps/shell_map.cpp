@@ -3,6 +3,7 @@
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "reflection/maps/face_chart.h"
+#include "reflection/maps/texel_prefilter.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,99 +12,160 @@
 namespace kokage {
 namespace {
 
-constexpr int kLeastResolution = 8, kMostResolution = 8192;
+constexpr int kLeastResolution = 16, kMostResolution = 8192;
 
 void check(const ShellSettings& s) {
     const auto number = [](double value) { return std::to_string(value); };
     const bool phong = s.kind == LobeKind::phong;
-    if (!(s.least_parameter <= s.most_parameter && s.least_parameter >= 0 && s.most_parameter <= (phong ? 1e6 : 1.0)))
-        throw InputError("shell map from " + number(s.least_parameter) + " to " + number(s.most_parameter) + ": " +
-                         (phong ? "exponents rise, from 0 to 1000000" : "roughnesses rise, above 0 up to 1"));
-    if (!phong && !(s.least_parameter >= 0.01))
-        throw InputError("shell map from roughness " + number(s.least_parameter) + ": ask for at least 0.01");
-    if (!(s.shell_ratio > 1 && s.shell_ratio <= 16))
+    const double least = phong ? 0 : 0.01, most = phong ? 1e6 : 1;
+    if (!(s.least_parameter >= least && s.least_parameter <= s.most_parameter && s.most_parameter <= most))
+        throw InputError("shell map from " + number(s.least_parameter) + " to " + number(s.most_parameter) +
+                         ": ask for " + (phong ? "exponents between 0 and 1000000" : "roughnesses between 0.01 and 1") +
+                         ", the smaller one first");
+    if (!(s.shell_ratio > 1 && s.shell_ratio <= 4))
         throw InputError("shell map with shells " + number(s.shell_ratio) +
-                         " times apart: ask for 1 to 16, 1 excluded");
+                         " widths apart: ask for 1 to 4, 1 excluded");
     if (!(s.texels_a_width >= 0.25 && s.texels_a_width <= 16))
         throw InputError("shell map of " + number(s.texels_a_width) + " texels a lobe's width: ask for 0.25 to 16");
 }
 
+double power(double width) {
+    return std::pow(width, double(ShellMap::spacing_power));
+}
+
+int resolution_of(double width, double texels_a_width) {
+    const double wanted = 1 + kPiDouble / 2 * texels_a_width / width;
+    return std::clamp(int(std::ceil(wanted - 1e-6)), kLeastResolution, kMostResolution);
+}
+
+std::size_t face_texels(int resolution, int border) {
+    const auto edge = std::size_t(resolution + 2 * border);
+    return edge * edge;
+}
+
+/// Texels of a whole shell, border included, plainly on their grid.
+void add_directions(std::vector<glm::vec3>& directions, int resolution, int border) {
+    const double step = 2.0 / (resolution - 1);
+    for (int face = 0; face < 6; ++face)
+        for (int y = -border; y < resolution + border; ++y)
+            for (int x = -border; x < resolution + border; ++x)
+                directions.push_back(face_direction(face, x * step - 1, y * step - 1));
+}
+
 } // namespace
-
-double lobe_spread(const Lobe& lobe) {
-    if (lobe.kind == LobeKind::phong)
-        return 1 / (lobe.parameter + 1);
-    const double alpha = lobe.parameter * lobe.parameter;
-    return alpha * alpha;
-}
-
-Lobe lobe_of_spread(LobeKind kind, double spread) {
-    return {kind, kind == LobeKind::phong ? 1 / spread - 1 : std::sqrt(std::sqrt(spread))};
-}
 
 ShellMap::ShellMap(const ShellSettings& settings) : settings_(settings) {
     check(settings);
-    layout_.kind = settings.kind;
-    const double ends[2] = {lobe_spread({settings.kind, settings.least_parameter}),
-                            lobe_spread({settings.kind, settings.most_parameter})};
+    const double ends[2] = {lobe_width({settings.kind, settings.least_parameter}),
+                            lobe_width({settings.kind, settings.most_parameter})};
     const double rough = std::max(ends[0], ends[1]), smooth = std::min(ends[0], ends[1]);
-    const int intervals = int(std::ceil(std::log(rough / smooth) / std::log(settings.shell_ratio) - 1e-9));
+    const double range = power(rough) - power(smooth), widest = power(smooth * settings.shell_ratio) - power(smooth);
+    const int intervals = int(std::ceil(range / widest - 1e-9));
+    first_power_ = float(power(rough));
+    shells_a_power_ = intervals == 0 ? 0.f : float(intervals / range);
+    layout_.kind = settings.kind;
     for (int i = 0; i <= intervals; ++i) {
-        const double spread = i == intervals ? smooth : rough * std::pow(smooth / rough, double(i) / intervals);
-        const double wanted = 1 + kPiDouble / 2 * settings.texels_a_width / std::sqrt(spread);
+        const double width = i == 0 ? rough
+                             : i == intervals
+                                 ? smooth
+                                 : std::pow(power(rough) - range * i / intervals, 1.0 / double(spacing_power));
         Shell shell;
-        shell.lobe = lobe_of_spread(settings.kind, spread);
-        shell.resolution = std::clamp(int(std::ceil(wanted)), kLeastResolution, kMostResolution);
-        // The mean over a face of the squared spacing is about (5/6) h².
-        const double h = kPiDouble / 2 / (shell.resolution - 1), hat = 5.0 / 6 * h * h / 6;
-        shell.texel_lobe = settings.kind == LobeKind::phong ? lobe_of_spread(settings.kind, spread - hat) : shell.lobe;
-        shell.first = layout_.size();
-        for (int face = 0; face < 6; ++face)
-            for (int y = 0; y < shell.resolution; ++y)
-                for (int x = 0; x < shell.resolution; ++x) {
-                    const double step = 2.0 / (shell.resolution - 1);
-                    layout_.directions.push_back(face_direction(face, x * step - 1, y * step - 1));
-                }
-        layout_.parameters.resize(layout_.size(), float(shell.texel_lobe.parameter));
+        shell.lobe = lobe_of_width(settings.kind, width);
+        shell.width = float(width);
+        shell.resolution = resolution_of(width, settings.texels_a_width);
+        shell.first = texel_count_;
+        shell.first_baked = layout_.size();
+        texel_count_ += 6 * face_texels(shell.resolution, border());
+        if (bytes() > (std::size_t(1) << 31) - 4)
+            throw InputError("shell map of more than 2 GB: ask for fewer texels a lobe's width, or rougher lobes");
+        add_directions(layout_.directions, shell.resolution, baked_border());
+        layout_.parameters.resize(layout_.size(), float(shell.lobe.parameter));
         shells_.push_back(shell);
     }
-    texels_.resize(layout_.size() * texel_bytes(settings.format));
+    texels_.resize(bytes() + 4);
 }
 
 void ShellMap::set_texels(std::span<const glm::vec3> filtered) {
     if (filtered.size() != layout_.size())
         throw InputError("shell map: " + std::to_string(filtered.size()) + " texels given, its layout has " +
                          std::to_string(layout_.size()));
-    texels_ = packed_texels(filtered, settings_.format);
+    const bool cubic = settings_.filter == TexelFilter::cubic;
+    const SymmetricTaps taps = cubic ? cubic_prefilter() : bilinear_prefilter();
+    const std::size_t each = texel_bytes(settings_.format);
+    parallel_blocks(6 * shells_.size(), 1, [&](std::size_t begin, std::size_t) {
+        const Shell& shell = shells_[shells_.size() - 1 - begin / 6]; // the large ones first
+        const std::size_t baked = face_texels(shell.resolution, baked_border());
+        const std::size_t stored = face_texels(shell.resolution, border()), face = begin % 6;
+        std::vector<glm::vec3> texels = prefiltered(filtered.subspan(shell.first_baked + face * baked, baked),
+                                                    shell.resolution + 2 * baked_border(), taps, 0);
+        if (!cubic) // what is sharpened may undershoot; a spline's coefficients may be negative, lookups are not
+            for (glm::vec3& texel : texels)
+                texel = glm::max(texel, glm::vec3(0));
+        const auto packed = packed_texels(texels, settings_.format);
+        std::copy(packed.begin(), packed.end(), texels_.begin() + std::ptrdiff_t((shell.first + face * stored) * each));
+    });
 }
+
+void ShellMap::restore_texels(std::span<const std::byte> stored) {
+    if (stored.size() != bytes())
+        throw InputError("shell map: " + std::to_string(stored.size()) + " bytes of texels given, it has " +
+                         std::to_string(bytes()));
+    std::copy(stored.begin(), stored.end(), texels_.begin());
+}
+
+ShellMap::Between ShellMap::between(float width) const {
+    if (shells_.size() == 1)
+        return {0, 0};
+    const float clamped = std::clamp(width, shells_.back().width, shells_.front().width);
+    const float position = (first_power_ - std::pow(clamped, spacing_power)) * shells_a_power_;
+    const int index = std::clamp(int(position), 0, int(shells_.size()) - 2);
+    const float a = shells_[std::size_t(index)].width, b = shells_[std::size_t(index) + 1].width;
+    return {index, std::clamp((a - clamped) / (a - b), 0.f, 1.f)};
+}
+
+namespace {
+
+/// Weights of the texels around a place that is `f` behind the texel of its cell.
+struct Weights {
+    int count;
+    float weight[4];
+};
+Weights weights(TexelFilter filter, float f) {
+    if (filter == TexelFilter::bilinear)
+        return {2, {1 - f, f}};
+    const float g = 1 - f; // uniform cubic B-spline
+    return {4, {g * g * g / 6, (4 + f * f * (3 * f - 6)) / 6, (4 + g * g * (3 * g - 6)) / 6, f * f * f / 6}};
+}
+
+} // namespace
 
 glm::vec3 ShellMap::shell_lookup(const Shell& shell, int face, float u, float v) const {
     const float half = 0.5f * float(shell.resolution - 1), x = half * u + half, y = half * v + half;
     const int last_cell = shell.resolution - 2;
     const int column = std::clamp(int(x), 0, last_cell), row = std::clamp(int(y), 0, last_cell);
-    const float fx = x - float(column), fy = y - float(row);
-    const std::size_t n = std::size_t(shell.resolution), each = texel_bytes(settings_.format);
-    const std::byte* p =
-        texels_.data() + each * (shell.first + (std::size_t(face) * n + std::size_t(row)) * n + std::size_t(column));
-    const auto texel = [&](std::size_t i) { return unpacked_texel(p + i * each, settings_.format); };
-    return glm::mix(glm::mix(texel(0), texel(1), fx), glm::mix(texel(n), texel(n + 1), fx), fy);
+    const Weights along_u = weights(settings_.filter, x - float(column));
+    const Weights along_v = weights(settings_.filter, y - float(row));
+    // The first weight belongs to the cell's texel (bilinear) or to the one before it, which the border shifts to.
+    const std::size_t edge = std::size_t(shell.resolution + 2 * border());
+    const std::size_t first = shell.first + (std::size_t(face) * edge + std::size_t(row)) * edge + std::size_t(column);
+    glm::vec3 sum(0);
+    for (int j = 0; j < along_v.count; ++j)
+        for (int i = 0; i < along_u.count; ++i) {
+            const std::size_t texel = first + std::size_t(j) * edge + std::size_t(i);
+            sum += along_v.weight[j] * along_u.weight[i] *
+                   unpacked_texel(texels_.data() + texel * texel_bytes(settings_.format), settings_.format);
+        }
+    return sum;
 }
 
 glm::vec3 ShellMap::lookup(const glm::vec3& direction, double parameter) const {
     const FacePlace place = face_place(direction);
-    const double rough = lobe_spread(shells_.front().lobe), smooth = lobe_spread(shells_.back().lobe);
-    const double spread = std::clamp(lobe_spread({settings_.kind, parameter}), smooth, rough);
-    const int intervals = int(shells_.size()) - 1;
-    const double position = intervals == 0 ? 0 : intervals * std::log(spread / rough) / std::log(smooth / rough);
-    const int i = std::clamp(int(position), 0, std::max(intervals - 1, 0));
-    const Shell& coarse = shells_[std::size_t(i)];
-    const glm::vec3 rougher = shell_lookup(coarse, place.face, place.u, place.v);
-    if (intervals == 0)
-        return rougher;
-    const Shell& fine = shells_[std::size_t(i) + 1];
-    const double a = lobe_spread(coarse.lobe), b = lobe_spread(fine.lobe);
-    const float share = std::clamp(float((a - spread) / (a - b)), 0.f, 1.f);
-    return glm::mix(rougher, shell_lookup(fine, place.face, place.u, place.v), share);
+    const Between place_between = between(float(lobe_width({settings_.kind, parameter})));
+    const std::size_t i = std::size_t(place_between.index);
+    glm::vec3 sum = (1 - place_between.share) * shell_lookup(shells_[i], place.face, place.u, place.v);
+    if (place_between.share > 0)
+        sum += place_between.share * shell_lookup(shells_[i + 1], place.face, place.u, place.v);
+    return glm::max(sum, glm::vec3(0));
 }
 
 void ShellMap::lookup(std::span<const glm::vec3> directions, std::span<const float> parameters,

@@ -16,23 +16,71 @@ namespace {
 using test::random_direction;
 
 TEST(ShellMap, ShellsCoverTheRangeAtTheirResolution) {
-    const ShellMap map({.least_parameter = 1, .most_parameter = 1000, .shell_ratio = 2, .texels_a_width = 1.5});
-    const auto& shells = map.shells();
-    EXPECT_NEAR(shells.front().lobe.parameter, 1, 1e-12);
-    EXPECT_NEAR(shells.back().lobe.parameter, 1000, 1e-9);
-    std::size_t first = 0;
-    for (std::size_t i = 0; i < shells.size(); ++i) {
-        EXPECT_EQ(shells[i].first, first);
-        first += std::size_t(6 * shells[i].resolution * shells[i].resolution);
-        if (i > 0) {
-            EXPECT_LE(lobe_spread(shells[i - 1].lobe), 2.0001 * lobe_spread(shells[i].lobe));
-            EXPECT_GE(shells[i].resolution, shells[i - 1].resolution);
+    for (const TexelFilter filter : {TexelFilter::bilinear, TexelFilter::cubic}) {
+        const ShellMap map({.least_parameter = 1, .most_parameter = 1000, .filter = filter, .texels_a_width = 1.5});
+        const auto& shells = map.shells();
+        EXPECT_NEAR(shells.front().lobe.parameter, 1, 1e-12);
+        EXPECT_NEAR(shells.back().lobe.parameter, 1000, 1e-9);
+        std::size_t stored = 0, baked = 0;
+        for (std::size_t i = 0; i < shells.size(); ++i) {
+            EXPECT_EQ(shells[i].first, stored);
+            EXPECT_EQ(shells[i].first_baked, baked);
+            const int edge = shells[i].resolution + 2 * map.border(),
+                      all = shells[i].resolution + 2 * map.baked_border();
+            stored += std::size_t(6 * edge * edge);
+            baked += std::size_t(6 * all * all);
+            if (i > 0) {
+                EXPECT_LE(shells[i - 1].width, 1.4143f * shells[i].width);
+                EXPECT_GE(shells[i].resolution, shells[i - 1].resolution);
+            }
+            EXPECT_LE(kPiDouble / 2 / (shells[i].resolution - 1), double(shells[i].width) / 1.5 * 1.0001);
         }
-        const double spacing = kPiDouble / 2 / (shells[i].resolution - 1);
-        EXPECT_LE(spacing, std::sqrt(lobe_spread(shells[i].lobe)) / 1.5 * 1.0001);
+        EXPECT_EQ(map.layout().size(), baked);
+        EXPECT_EQ(map.bytes(), stored * 6);
+        EXPECT_EQ(map.texels().size(), map.bytes());
     }
-    EXPECT_EQ(map.layout().size(), first);
-    EXPECT_EQ(map.bytes(), first * 6);
+}
+
+TEST(ShellMap, LayoutIsTheGridOfEachFaceAndItsBorder) {
+    const ShellMap map({.least_parameter = 3, .most_parameter = 3, .filter = TexelFilter::cubic});
+    const int n = map.shells()[0].resolution, b = map.baked_border();
+    std::size_t texel = 0;
+    for (int face = 0; face < 6; ++face)
+        for (int y = -b; y < n + b; ++y)
+            for (int x = -b; x < n + b; ++x, ++texel) {
+                const glm::dvec3 d = face_direction(face, 2.0 * x / (n - 1) - 1, 2.0 * y / (n - 1) - 1);
+                ASSERT_LT(glm::length(d - glm::dvec3(map.layout().directions[texel])), 1e-6);
+                ASSERT_EQ(map.layout().parameters[texel], 3.f);
+            }
+}
+
+TEST(ShellMap, LookupsOnTexelsAndShellsAreThere) {
+    // The mean of a lobe over a linear function of direction is linear too: bands 0 and 1 with k_1 = (L+1)/(L+2).
+    for (const TexelFilter filter : {TexelFilter::bilinear, TexelFilter::cubic}) {
+        ShellMap map({.least_parameter = 2,
+                      .most_parameter = 400,
+                      .filter = filter,
+                      .format = TexelFormat::float_rgb,
+                      .texels_a_width = 4});
+        const auto truth = [](const glm::vec3& d, double exponent) {
+            return glm::vec3(1) + 0.5f * float((exponent + 1) / (exponent + 2)) * d;
+        };
+        std::vector<glm::vec3> texels(map.layout().size());
+        for (std::size_t i = 0; i < texels.size(); ++i)
+            texels[i] = truth(map.layout().directions[i], double(map.layout().parameters[i]));
+        map.set_texels(texels);
+        Random random(6);
+        const float on_shell = filter == TexelFilter::cubic ? 2e-5f : 1e-3f;
+        for (int i = 0; i < 3000; ++i) {
+            const glm::vec3 d = random_direction(random);
+            for (const ShellMap::Shell& shell : map.shells())
+                ASSERT_LT(glm::length(map.lookup(d, shell.lobe.parameter) - truth(d, shell.lobe.parameter)), on_shell);
+            const double between = std::exp(double(random.uniform(0.7f, 6)));
+            ASSERT_LT(glm::length(map.lookup(d, between) - truth(d, between)), 2e-3f);
+        }
+        EXPECT_EQ(map.lookup(glm::vec3(0, 1, 0), 1), map.lookup(glm::vec3(0, 1, 0), 2)); // the nearest end
+        EXPECT_EQ(map.lookup(glm::vec3(0, 1, 0), 1e9), map.lookup(glm::vec3(0, 1, 0), 400));
+    }
 }
 
 TEST(ShellMap, OneLobeIsOneShell) {
