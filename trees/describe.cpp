@@ -188,7 +188,7 @@ std::string text_of(const TreeDescription& d) {
         if (order.bearing < order.branches && order.leaves > 0)
             text += " on " + count_text(order.bearing) + " of them";
         if (order.mean_length_m > 0)
-            text += "; " + length_text(order.mean_length_m) + " long";
+            text += (order.branches > 1 ? "; on average " : "; ") + length_text(order.mean_length_m) + " long";
         if (order.mean_radius_m > 0)
             text += ", radius " + length_text(order.mean_radius_m);
         else if (order.mean_length_m > 0)
@@ -198,6 +198,8 @@ std::string text_of(const TreeDescription& d) {
     if (d.leaves_without_branch > 0)
         text += "  of no branch: " + counted(d.leaves_without_branch, "leaf", "leaves") + "\n";
     for (const TreeDescription::Surface& s : d.surfaces) {
+        if (s.triangles == 0) // the leaves of a bare tree
+            continue;
         const bool leaf = s.kind == TreePartKind::foliage;
         text += std::string(leaf ? "foliage" : "bark   ") + "      '" + shown_name(s.material) +
                 "': " + counted(s.triangles, "triangle", "triangles") + (s.textured ? ", textured" : "") +

@@ -268,9 +268,9 @@ void infer_branching(Tree& tree) {
         tree.notes.push_back(std::string(bark.pieces > 0 ? "what is not foliage is too stout for wood" : "no bark") +
                              ": a trunk was imagined from the ground to the middle of the leaves");
     } else {
-        tree.notes.push_back("branching inferred from " + std::to_string(bark.pieces) + " connected pieces of bark: " +
-                             counted(tree.skeleton.branches.size(), "branch", "branches") + ", " +
-                             std::to_string(bark.stems) + (bark.stems == 1 ? " stem" : " stems"));
+        tree.notes.push_back("branching inferred from " + counted(bark.pieces, "connected piece", "connected pieces") +
+                             " of bark: " + counted(tree.skeleton.branches.size(), "branch", "branches") + ", " +
+                             counted(bark.stems, "stem", "stems"));
         if (bark.lumps > 0)
             tree.notes.push_back(counted(bark.lumps, "piece", "pieces") +
                                  " of bark too stout for wood (stones, a pot) left out of the branching");
@@ -292,8 +292,9 @@ void infer_branching(Tree& tree) {
         maker.add(branch, leaves);
     }
     if (maker.twigs > 0)
-        tree.notes.push_back(std::to_string(led) + " leaves hang far from all wood: " + std::to_string(maker.twigs) +
-                             " twigs were imagined that lead to clusters of them");
+        tree.notes.push_back(counted(led, "leaf hangs", "leaves hang") +
+                             " far from all wood: " + counted(maker.twigs, "twig was", "twigs were") +
+                             " imagined that lead to clusters of them");
 }
 
 } // namespace kokage

@@ -1,5 +1,6 @@
 // Reading and writing species files.
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/growth/nearest_word.h"
 #include "trees/species.h"
 
@@ -36,7 +37,8 @@ class SpeciesReader {
             fail("it holds no { } with a species", how_to_start);
         for (const auto& [key, value] : json_.items())
             if (std::find(known.begin(), known.end(), key) == known.end())
-                fail("nothing is called '" + key + "' here; did you mean '" + nearest_word(key, known) + "'?");
+                fail("nothing is called '" + shown_name(key) + "' here; did you mean '" +
+                     nearest_word(key, known).value_or("parameters") + "'?");
         species_.name = name();
         species_.latin_name = line("latin_name");
         species_.summary = line("summary");

@@ -52,7 +52,7 @@ void print_parameters(const Species& species) {
 }
 
 /// `--describe`: on the terminal, or with -o as a species file to start from.
-void describe_species(GrowOptions options) {
+void describe_species(GrowOptions options, bool quiet) {
     options.source.name = options.describe;
     if (options.seed)
         options.source.settings.push_back("seed=" + std::to_string(*options.seed));
@@ -62,6 +62,14 @@ void describe_species(GrowOptions options) {
     check_output(options.output, "the species file", {".json"});
     check_distinct({options.output, options.source.file()});
     write_file(options.output, species_file_text(species));
+    if (!quiet)
+        std::printf("%s: all parameters of %s; change them, then: kokage grow %s\n", options.output.c_str(),
+                    species.name.c_str(), options.output.c_str());
+}
+
+bool sets_seed(const GrowOptions& options) {
+    return std::any_of(options.source.settings.begin(), options.source.settings.end(),
+                       [](const std::string& setting) { return setting.starts_with("seed="); });
 }
 
 void grow_and_write(GrowOptions options, const CommandContext& context) {
@@ -71,8 +79,8 @@ void grow_and_write(GrowOptions options, const CommandContext& context) {
         options.source.settings.push_back("seed=" + std::to_string(*options.seed));
     check_tree_source(options.source);
     if (!options.seeds.empty()) {
-        if (options.seed)
-            throw InputError("--seed and --seeds contradict one another; leave one of them out");
+        if (sets_seed(options))
+            throw InputError("a seed and --seeds contradict one another; leave one of them out");
         const SeedRange seeds = seeds_from(options.seeds);
         if (lower_ending(options.output) == ".glb")
             throw InputError("--seeds: many trees need a folder; give -o FOLDER, not '" + options.output.string() +
@@ -136,7 +144,7 @@ Command grow_command(CLI::App& program) {
                 if (options->list)
                     print_species_list();
                 else if (!options->describe.empty())
-                    describe_species(*options);
+                    describe_species(*options, context.quiet);
                 else
                     grow_and_write(*options, context);
             }};

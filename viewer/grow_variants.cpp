@@ -27,7 +27,9 @@ Json parameters_json(const GrowthParameters& parameters) {
     Json json = Json::object();
     for (const ParameterDescription& p : parameter_descriptions(parameters))
         if (p.name != "seed")
-            json[p.name] = p.choices.empty() ? Json(p.value) : Json(value_text(p));
+            json[p.name] = !p.choices.empty() ? Json(value_text(p))
+                           : p.whole          ? Json(std::int64_t(p.value))
+                                              : Json(p.value);
     return json;
 }
 
@@ -86,8 +88,8 @@ class Manifest {
     }
 
     [[noreturn]] void refuse(const std::string& what, const Json& there, const Json& asked) const {
-        throw InputError("'" + folder_.string() + "' holds trees of another " + what + " (" + there.dump() + ", not " +
-                         asked.dump() + "); choose another folder, or remove its manifest.json");
+        throw InputError("'" + folder_.string() + "' holds other trees: their " + what + " is " + there.dump() +
+                         ", not " + asked.dump() + "; choose another folder, or remove its manifest.json");
     }
 
     fs::path folder_;

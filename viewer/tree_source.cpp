@@ -9,6 +9,7 @@
 #include <charconv>
 #include <cmath>
 #include <filesystem>
+#include <set>
 
 namespace kokage {
 namespace fs = std::filesystem;
@@ -44,14 +45,19 @@ bool is_tree_file(const std::string& name) {
 Species asked_species(const TreeSource& source) {
     Species species = is_species_file(source.name) ? read_species(source.name) : find_species(source.name);
     GrowthParameters& parameters = species.parameters;
-    if (source.leaves)
+    std::set<std::string, std::less<>> given;
+    if (source.leaves) {
         set_parameter(parameters, "leaves", std::to_string(*source.leaves));
+        given.insert("leaves");
+    }
     for (const std::string& setting : source.settings) {
         const std::size_t equals = setting.find('=');
         if (equals == 0 || equals == std::string::npos)
             throw InputError("--set: '" + setting + "' is not NAME=VALUE");
-        set_parameter(parameters, std::string_view(setting).substr(0, equals),
-                      std::string_view(setting).substr(equals + 1));
+        const std::string_view name = std::string_view(setting).substr(0, equals);
+        set_parameter(parameters, name, std::string_view(setting).substr(equals + 1));
+        if (!given.emplace(name).second)
+            throw InputError("'" + std::string(name) + "' is given twice; leave one of them out");
     }
     check_parameters(parameters);
     return species;

@@ -23,11 +23,16 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 
 } // namespace
 
-std::string nearest_word(std::string_view word, const std::vector<std::string>& words) {
+std::optional<std::string> nearest_word(std::string_view word, const std::vector<std::string>& words) {
     const std::string_view begin = word.substr(0, 80); // far more than any of ours
-    return *std::min_element(words.begin(), words.end(), [&](const std::string& a, const std::string& b) {
-        return edit_distance(begin, a) < edit_distance(begin, b);
-    });
+    std::optional<std::string> nearest;
+    std::size_t least = std::max<std::size_t>(1, begin.size() / 2) + 1;
+    for (const std::string& candidate : words)
+        if (const std::size_t distance = edit_distance(begin, candidate); distance < least) {
+            least = distance;
+            nearest = candidate;
+        }
+    return nearest;
 }
 
 } // namespace kokage

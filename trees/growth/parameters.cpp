@@ -50,8 +50,9 @@ const ParameterRow& find_row(std::string_view name) {
     if (const std::string hint = hint_for(name); !hint.empty())
         throw InputError("no growth parameter is called '" + std::string(name) + "': " + hint +
                          ". 'kokage grow --describe oak' lists all");
-    throw InputError("no growth parameter is called '" + std::string(name) + "'; did you mean '" +
-                     nearest_word(name, names) + "'? 'kokage grow --describe oak' lists all");
+    const std::optional<std::string> nearest = nearest_word(name, names);
+    throw InputError("no growth parameter is called '" + std::string(name) + "'; " +
+                     (nearest ? "did you mean '" + *nearest + "'? " : "") + "'kokage grow --describe oak' lists all");
 }
 
 void check(const ParameterDescription& description, double value) {
