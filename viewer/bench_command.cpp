@@ -1,6 +1,7 @@
 // `kokage bench`: time against error or size, in tables and plots.
 #include "common/services/error.h"
 #include "tests/benchmark/foliage_benchmark.h"
+#include "tests/benchmark/reflection_benchmark.h"
 #include "tests/benchmark/trees_benchmark.h"
 #include "viewer/command.h"
 
@@ -16,50 +17,87 @@ class NoText : public std::streambuf {
     int overflow(int c) override { return traits_type::not_eof(c); }
 };
 
+struct BenchOptions {
+    std::string what;
+    FoliageBenchmarkOptions foliage; ///< what all have in common is here too
+    std::vector<std::string> experiments;
+};
+
+int run_benchmarks(const BenchOptions& options, const CommandContext& context, std::ostream& out) {
+    const FoliageBenchmarkOptions& common = options.foliage;
+    const auto wanted = [&](const char* name) { return options.what == name || options.what == "all"; };
+    int failures = 0;
+    if (wanted("foliage"))
+        failures += run_foliage_benchmark(common, *context.progress, out);
+    if (wanted("trees"))
+        failures += run_trees_benchmark(
+            {.output_folder = common.output_folder, .quick = common.quick, .threads = context.threads},
+            *context.progress, out);
+    if (wanted("reflection"))
+        failures += run_reflection_benchmark({.output_folder = common.output_folder,
+                                              .data_folder = common.data_folder,
+                                              .quick = common.quick,
+                                              .threads = context.threads,
+                                              .experiments = options.experiments},
+                                             *context.progress, out);
+    return failures;
+}
+
 } // namespace
 
 Command bench_command(CLI::App& program) {
-    const auto options = std::make_shared<FoliageBenchmarkOptions>();
-    CLI::App* app =
-        program.add_subcommand("bench", "Measure: every method's error against time; growing against others");
+    const auto options = std::make_shared<BenchOptions>();
+    FoliageBenchmarkOptions& common = options->foliage;
+    CLI::App* app = program.add_subcommand(
+        "bench", "Measure: every method's error against time; growing against others; reflection maps");
     app->footer("\nExample: kokage bench foliage --quick -o results");
-    const auto what = std::make_shared<std::string>();
-    app->add_option("WHAT", *what,
+    app->add_option("WHAT", options->what,
                     "foliage (methods of shading: error against time), trees (growing: time and memory against leaves, "
-                    "beside other generators where they are installed) or all")
+                    "beside other generators where they are installed), reflection (reflection maps: the paper's "
+                    "tables, error against time, beside cmgen where it is installed) or all")
         ->required();
-    app->add_option("-o,--output", options->output_folder,
-                    "Folder for foliage.json or trees.json, tables (.md) and plots; made if it is missing")
+    app->add_option("-o,--output", common.output_folder,
+                    "Folder for foliage.json, trees.json or reflection.json, tables (.md) and plots; made if it is "
+                    "missing")
         ->type_name("FOLDER")
         ->required();
-    app->add_flag("--quick", options->quick,
+    app->add_flag("--quick", common.quick,
                   "foliage: the scenes of 30,000 leaves alone, within two minutes with stored references; trees: two "
-                  "species");
-    app->add_option("--data", options->data_folder, "foliage: folder with environments (env/*.hdr, *.exr)")
+                  "species; reflection: smaller samples, within two minutes");
+    app->add_option("--data", common.data_folder,
+                    "foliage, reflection: folder with environments (env/*.hdr, *.exr) and objects")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
-    app->add_option("--reference-paths", options->reference_paths,
+    app->add_option(
+           "--experiment", options->experiments,
+           "reflection: only these, separated by commas (otherwise all): " +
+               [] {
+                   std::string names;
+                   for (const std::string& name : reflection_experiment_names())
+                       names += (names.empty() ? "" : ", ") + name;
+                   return names;
+               }())
+        ->type_name("NAME")
+        ->delimiter(',');
+    app->add_option("--reference-paths", common.reference_paths,
                     "foliage: paths a leaf side of references that are not stored and must be made")
         ->type_name("N")
         ->check(CLI::PositiveNumber.description(""))
         ->capture_default_str();
-    return {app, [options, what](const CommandContext& context) {
-                if (*what != "foliage" && *what != "trees" && *what != "all")
-                    throw InputError("there is no benchmark '" + *what + "'; there are: foliage, trees, all");
-                options->threads = context.threads;
+    return {app, [options](const CommandContext& context) {
+                const std::string& what = options->what;
+                if (what != "foliage" && what != "trees" && what != "reflection" && what != "all")
+                    throw InputError("there is no benchmark '" + what +
+                                     "'; there are: foliage, trees, reflection, all");
+                if (!options->experiments.empty() && what != "reflection")
+                    throw InputError("--experiment: only the benchmark reflection is made of experiments to choose "
+                                     "from");
+                options->foliage.threads = context.threads;
                 NoText nothing;
                 std::ostream silent(&nothing);
-                std::ostream& out = context.quiet ? silent : std::cout;
-                int failures = 0;
-                if (*what != "trees")
-                    failures += run_foliage_benchmark(*options, *context.progress, out);
-                if (*what != "foliage")
-                    failures += run_trees_benchmark(
-                        {.output_folder = options->output_folder, .quick = options->quick, .threads = context.threads},
-                        *context.progress, out);
-                if (failures != 0)
+                if (run_benchmarks(*options, context, context.quiet ? silent : std::cout) != 0)
                     throw std::runtime_error("a measurement failed; the others are in " +
-                                             options->output_folder.string());
+                                             options->foliage.output_folder.string());
             }};
 }
 

@@ -1,0 +1,22 @@
+#pragma once
+// Any of the three bakers, by its method.
+#include "reflection/maps/baker.h"
+#include "reflection/maps/weight_table.h"
+
+#include <filesystem>
+
+namespace kokage {
+
+struct BakerSettings {
+    BakeMethod method = BakeMethod::spectral;
+    double tolerance = 1e-4;              ///< spectral: SpectralSettings::tolerance
+    TableSettings table{};                ///< table
+    std::filesystem::path stored_setup{}; ///< spectral, table: where set-up is kept between runs; empty = nowhere
+};
+
+/// For a layout and a size of image. Adds the stages of its set-up to the report. Throws InputError, Stopped.
+std::unique_ptr<Baker> make_baker(const TexelLayout& layout, int image_width, int image_height,
+                                  const BakerSettings& settings, WorkReport& report,
+                                  Progress& progress = silent_progress());
+
+} // namespace kokage

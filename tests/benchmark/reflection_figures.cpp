@@ -1,0 +1,105 @@
+#include "tests/benchmark/markdown.h"
+#include "tests/benchmark/reflection_tables.h"
+
+#include <algorithm>
+#include <functional>
+#include <optional>
+
+namespace kokage {
+
+namespace {
+
+using Records = std::vector<ReflectionRecord>;
+using Field = std::optional<double> ReflectionRecord::*;
+using Condition = std::function<bool(const ReflectionRecord&)>;
+
+/// The worst of a field over the records that a condition picks: its largest value (`high`), or its least.
+std::optional<double> worst(const Records& records, const Condition& picks, Field field, bool high = true) {
+    std::optional<double> result;
+    for (const ReflectionRecord& record : records)
+        if (picks(record) && record.*field)
+            result = !result ? *(record.*field)
+                     : high  ? std::max(*result, *(record.*field))
+                             : std::min(*result, *(record.*field));
+    return result;
+}
+
+Condition of(const std::string& experiment, const std::string& method, int size = 0,
+             const std::string& environment = "") {
+    return [=](const ReflectionRecord& r) {
+        return r.experiment == experiment && r.method == method && (size == 0 || r.size == size) &&
+               (environment.empty() || r.environment == environment);
+    };
+}
+
+std::string at_most(const std::string& what, std::optional<double> measured, double target, const std::string& unit) {
+    return markdown_row({what, measured ? three_digits(measured) + unit : "–", "≤ " + three_digits(target) + unit,
+                         !measured             ? "not measured"
+                         : *measured <= target ? "met"
+                                               : "**short**"});
+}
+
+std::string at_least(const std::string& what, std::optional<double> measured, double target, const std::string& unit) {
+    return markdown_row({what, measured ? three_digits(measured) + unit : "–", "≥ " + three_digits(target) + unit,
+                         !measured             ? "not measured"
+                         : *measured >= target ? "met"
+                                               : "**short**"});
+}
+
+std::optional<double> times(std::optional<double> value, double factor) {
+    return value ? std::optional(*value * factor) : std::nullopt;
+}
+
+std::string container_rows(const Records& records) {
+    const auto half_shells = [](const std::string& environment) -> Condition {
+        return [=](const ReflectionRecord& r) {
+            return of("containers", "shells", 0, environment)(r) && r.note.find("half") != std::string::npos;
+        };
+    };
+    std::string text = at_most("shells, half: memory",
+                               times(worst(records, half_shells(""), &ReflectionRecord::bytes), 1e-6), 1.5, " MB");
+    for (const auto& [environment, mean, most] :
+         {std::tuple("photograph", 0.2, 8.0), std::tuple("pattern", 0.05, 3.0)}) {
+        const std::string name = std::string("shells between texels, ") + environment;
+        text += at_most(name + ", mean", worst(records, half_shells(environment), &ReflectionRecord::mean_error_255),
+                        mean, "/255");
+        text += at_most(name + ", maximum", worst(records, half_shells(environment), &ReflectionRecord::max_error_255),
+                        most, "/255");
+    }
+    return text;
+}
+
+std::string hdr_rows(const Records& records) {
+    const Condition real = [](const ReflectionRecord& r) {
+        return of("hdr", "spectral")(r) && r.environment != "sun-1e6";
+    };
+    const Condition sun = of("hdr", "spectral", 0, "sun-1e6");
+    return at_most("spectral, lone 1e6 sun: maximum relative error, permille",
+                   times(worst(records, sun, &ReflectionRecord::max_relative_error), 1e3), 3, "") +
+           at_most("spectral, three real HDR images: maximum relative error, permille",
+                   times(worst(records, real, &ReflectionRecord::max_relative_error), 1e3), 10, "") +
+           at_most("spectral, three real HDR images: CPU, 128³", worst(records, real, &ReflectionRecord::cpu_seconds),
+                   0.3, " s");
+}
+
+} // namespace
+
+std::string reflection_figures(const Records& records) {
+    return markdown_row({"figure (the worst of all that were measured)", "measured", "target", ""}) +
+           markdown_row({"---", "---:", "---:", "---"}) +
+           at_most("table: mean error on the pattern, all thresholds",
+                   worst(records, of("tables-2-3", "table", 0, "pattern"), &ReflectionRecord::mean_error_255), 0.05,
+                   "/255") +
+           at_most("spectral 128³: CPU on one core",
+                   worst(records, of("spectral", "spectral", 128), &ReflectionRecord::cpu_seconds), 0.1, " s") +
+           at_most("spectral 128³: maximum error at voxels",
+                   worst(records, of("spectral", "spectral", 128), &ReflectionRecord::max_error_255), 0.05, "/255") +
+           at_most("spectral 128³: set-up, CPU",
+                   worst(records, of("spectral", "spectral", 128), &ReflectionRecord::setup_cpu_seconds), 1, " s") +
+           at_least("spectral 64³: video on 2 cores",
+                    worst(records, of("video", "spectral", 64), &ReflectionRecord::frames_per_second, false), 60,
+                    " frames/s") +
+           hdr_rows(records) + container_rows(records);
+}
+
+} // namespace kokage
