@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 namespace kokage {
@@ -112,11 +113,12 @@ void judge(std::span<const glm::vec3> values, std::span<const glm::vec3> truth, 
             const double relative = error / std::max({double(truth[i][c]), kLeastShare * mean, 1e-300});
             sum += error;
             relative_sum += relative;
-            // Written so that NaN stays NaN.
-            most = error <= most ? most : error;
-            most_relative = relative <= most_relative ? most_relative : relative;
+            most = std::max(most, error);
+            most_relative = std::max(most_relative, relative);
         }
     const double count = 3 * double(truth.size());
+    if (!std::isfinite(sum)) // std::max passes NaN over
+        most = most_relative = std::numeric_limits<double>::quiet_NaN();
     record.mean_error_255 = 255 * sum / count;
     record.max_error_255 = 255 * most;
     record.mean_relative_error = relative_sum / count;

@@ -11,11 +11,11 @@ namespace kokage {
 
 struct ReflectionBenchmarkOptions {
     std::filesystem::path output_folder = "."; ///< reflection.json, reflection.md and plots; made if missing
-    std::filesystem::path data_folder;         ///< with env and objects; empty: synthetic surroundings alone
+    std::filesystem::path data_folder{};       ///< with env and objects; empty: synthetic surroundings alone
     bool quick = false;                        ///< smaller samples: within two minutes on 2 cores
     int threads = 0;                           ///< 0 = all cores; times of one core are taken on one all the same
     bool plots = true;
-    std::vector<std::string> experiments; ///< by name; empty = all
+    std::vector<std::string> experiments{}; ///< by name; empty = all
 };
 
 /// Names that `experiments` may have, in the order in which they run.

@@ -2,6 +2,7 @@
 #include "tests/benchmark/reflection_environments.h"
 #include "tests/benchmark/reflection_record.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstdlib>
 #include <gtest/gtest.h>
