@@ -194,14 +194,23 @@ class CurveWalk {
     std::array<int, 4> column_{};
 };
 
-/// Integral -> mean, and a place in the face. Rounding may leave a black texel a little below 0.
-void put(std::vector<glm::vec3>& texels, int size, int face, int x, int y, const glm::dvec3& integral) {
-    texels[(std::size_t(face) * std::size_t(size) + std::size_t(y)) * std::size_t(size) + std::size_t(x)] =
-        glm::vec3(glm::max(integral / cube_texel_solid_angle(x, y, size), 0.));
-}
+/// The texels in the making.
+struct Cube {
+    int size;
+    std::vector<double> solid_angles; ///< of a face
+    std::vector<glm::vec3> texels;
+
+    /// Integral -> mean. Rounding may leave a black texel a little below 0.
+    void put(int face, int x, int y, const glm::dvec3& integral) {
+        const std::size_t in_face = std::size_t(y) * std::size_t(size) + std::size_t(x);
+        texels[std::size_t(face) * solid_angles.size() + in_face] =
+            glm::vec3(glm::max(integral / solid_angles[in_face], 0.));
+    }
+};
 
 /// The X and Z faces: horizontal edges alone. Line j has t = 1 - 2j / size >= 0.
-void fill_sides(std::vector<glm::vec3>& texels, int size, const Columns& columns) {
+void fill_sides(Cube& cube, const Columns& columns) {
+    const int size = cube.size;
     Family family(size / 2 + 1, size, false);
     parallel_blocks(std::size_t(family.lines), 4, [&](std::size_t begin, std::size_t end) {
         for (std::size_t j = begin; j < end; ++j)
@@ -215,13 +224,14 @@ void fill_sides(std::vector<glm::vec3>& texels, int size, const Columns& columns
             };
             for (int y = int(begin); y < int(end); ++y)
                 for (int x = 0; x < size; ++x)
-                    put(texels, size, face_of_turn[std::size_t(turn)], x, y, border(y + 1, x) - border(y, x));
+                    cube.put(face_of_turn[std::size_t(turn)], x, y, border(y + 1, x) - border(y, x));
         }
     });
 }
 
 /// The Y faces. Grid line g lies at 2g / size - 1 from the middle; the lines at +-b share a curve.
-void fill_caps(std::vector<glm::vec3>& texels, int size, const Columns& columns) {
+void fill_caps(Cube& cube, const Columns& columns) {
+    const int size = cube.size;
     Family family((size + 1) / 2, size, true);
     auto line_of = [&](int g) { return (std::abs(2 * g - size) + 1) / 2 - 1; };
     parallel_blocks(std::size_t(family.lines), 4, [&](std::size_t begin, std::size_t end) {
@@ -247,8 +257,8 @@ void fill_caps(std::vector<glm::vec3>& texels, int size, const Columns& columns)
                     auto across_t = [&](int g) { return sector(lower, 1, 3, g, x, mirrored_x); };
                     auto across_s = [&](int g) { return sector(lower, 0, 2, g, mirrored_row, row); };
                     // The lower face counts t the other way.
-                    put(texels, size, lower ? 3 : 2, x, lower ? mirrored_row : row,
-                        across_t(row + 1) - across_t(row) + across_s(x + 1) - across_s(x));
+                    cube.put(lower ? 3 : 2, x, lower ? mirrored_row : row,
+                             across_t(row + 1) - across_t(row) + across_s(x + 1) - across_s(x));
                 }
     });
 }
@@ -257,10 +267,10 @@ void fill_caps(std::vector<glm::vec3>& texels, int size, const Columns& columns)
 
 std::vector<glm::vec3> cube_from_lat_long(const Image& image, int size) {
     const Columns columns = columns_of(image);
-    std::vector<glm::vec3> texels(6 * std::size_t(size) * std::size_t(size));
-    fill_sides(texels, size, columns);
-    fill_caps(texels, size, columns);
-    return texels;
+    Cube cube{size, cube_texel_solid_angles(size), std::vector<glm::vec3>(6 * std::size_t(size) * std::size_t(size))};
+    fill_sides(cube, columns);
+    fill_caps(cube, columns);
+    return std::move(cube.texels);
 }
 
 namespace {

@@ -53,6 +53,11 @@ double position_of(int x, int size) {
     return (2 * x + 1) / double(size) - 1;
 }
 
+/// Solid angle of a face's rectangle from its middle to (s, t), signed: atan(s t / sqrt(1 + s² + t²)).
+double rectangle_solid_angle(double s, double t) {
+    return std::atan2(s * t, std::sqrt(1 + s * s + t * t));
+}
+
 bool is_unfiltered(LobeKind kind, double parameter) {
     return kind == LobeKind::ggx ? parameter == 0 : std::isinf(parameter) && parameter > 0;
 }
@@ -91,11 +96,33 @@ glm::dvec3 cube_texel_direction(int face, int x, int y, int size) {
 }
 
 double cube_texel_solid_angle(int x, int y, int size) {
-    // The face's rectangle from its middle to (s, t) subtends atan(s t / sqrt(1 + s² + t²)).
     const double s0 = 2. * x / size - 1, s1 = 2. * (x + 1) / size - 1;
     const double t0 = 2. * y / size - 1, t1 = 2. * (y + 1) / size - 1;
-    auto corner = [](double s, double t) { return std::atan2(s * t, std::sqrt(1 + s * s + t * t)); };
-    return corner(s1, t1) - corner(s0, t1) - corner(s1, t0) + corner(s0, t0);
+    return rectangle_solid_angle(s1, t1) - rectangle_solid_angle(s0, t1) - rectangle_solid_angle(s1, t0) +
+           rectangle_solid_angle(s0, t0);
+}
+
+std::vector<double> cube_texel_solid_angles(int size) {
+    // A quarter of the face, its corner at the middle; the others mirror it.
+    const int count = (size + 1) / 2, middle = size - count;
+    auto line = [&](int i) { return 2. * (middle + i) / size - 1; };
+    const std::size_t n = std::size_t(size);
+    std::vector<double> above(std::size_t(count) + 1), below(std::size_t(count) + 1), angles(n * n);
+    for (int i = 0; i <= count; ++i)
+        above[std::size_t(i)] = rectangle_solid_angle(line(i), line(0));
+    for (int y = 0; y < count; ++y) {
+        for (int i = 0; i <= count; ++i)
+            below[std::size_t(i)] = rectangle_solid_angle(line(i), line(y + 1));
+        for (int x = 0; x < count; ++x) {
+            const std::size_t i = std::size_t(x);
+            const double angle = below[i + 1] - below[i] - above[i + 1] + above[i];
+            for (const int row : {middle + y, count - 1 - y})
+                for (const int column : {middle + x, count - 1 - x})
+                    angles[std::size_t(row) * n + std::size_t(column)] = angle;
+        }
+        std::swap(above, below);
+    }
+    return angles;
 }
 
 int usual_level_count(int size) {

@@ -53,6 +53,12 @@ TEST(PrefilteredCube, SolidAnglesSumToTheSphere) {
         for (int x = 0; x < 37; ++x)
             sum += cube_texel_solid_angle(x, y, 37);
     EXPECT_NEAR(6 * sum, 4 * kPiDouble, 1e-12);
+    for (const int size : {1, 2, 3, 8, 37}) {
+        const std::vector<double> all = cube_texel_solid_angles(size);
+        ASSERT_EQ(all.size(), std::size_t(size * size));
+        for (int i = 0; i < size * size; ++i)
+            EXPECT_NEAR(all[std::size_t(i)] / cube_texel_solid_angle(i % size, i / size, size), 1, 1e-12);
+    }
 }
 
 TEST(PrefilteredCube, NeighboursAcrossEveryEdgeLieSideBySide) {
