@@ -33,6 +33,13 @@ RoughnessScale RoughnessScale::as_printed(int cube_size, double levels) {
     return {6.2, levels, cube_size};
 }
 
+RoughnessScale RoughnessScale::with_u(double u, int cube_size, double levels) {
+    check(cube_size, levels);
+    if (!(u > 0) || !std::isfinite(u))
+        throw InputError("the roughness scale's u is " + std::to_string(u) + ": give more than 0");
+    return {u, levels, cube_size};
+}
+
 double RoughnessScale::exponent(double smoothness) const {
     const double slope = u_ / (smoothness * cube_size_); // eq 12: tan(psi)
     return smoothness > 0 ? 2 * std::log(levels_) / std::log1p(slope * slope) : 0;

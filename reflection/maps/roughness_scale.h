@@ -13,6 +13,8 @@ class RoughnessScale {
     static RoughnessScale solved(int cube_size, double levels = 256, double most_exponent = 5000);
     /// u as the paper prints it: 6.2.
     static RoughnessScale as_printed(int cube_size, double levels = 256);
+    /// u as given: that of a map that was stored.
+    static RoughnessScale with_u(double u, int cube_size, double levels);
 
     double exponent(double smoothness) const; ///< g(λ), λ in (0,1]; 0 at λ = 0
     double smoothness(double exponent) const; ///< its inverse

@@ -12,7 +12,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kLeastResolution = 16, kMostResolution = 8192;
+constexpr int kLeastResolution = 16, kMostResolution = 8192, kMostShells = 256;
 
 void check(const ShellSettings& s) {
     const auto number = [](double value) { return std::to_string(value); };
@@ -54,34 +54,47 @@ void add_directions(std::vector<glm::vec3>& directions, int resolution, int bord
 
 } // namespace
 
-ShellMap::ShellMap(const ShellSettings& settings) : settings_(settings) {
+std::vector<ShellMap::Shell> ShellMap::plan(const ShellSettings& settings) {
     check(settings);
     const double ends[2] = {lobe_width({settings.kind, settings.least_parameter}),
                             lobe_width({settings.kind, settings.most_parameter})};
     const double rough = std::max(ends[0], ends[1]), smooth = std::min(ends[0], ends[1]);
     const double range = power(rough) - power(smooth), widest = power(smooth * settings.shell_ratio) - power(smooth);
-    const int intervals = int(std::ceil(range / widest - 1e-9));
-    first_power_ = float(power(rough));
-    shells_a_power_ = intervals == 0 ? 0.f : float(intervals / range);
-    layout_.kind = settings.kind;
+    const double wanted = std::ceil(range / widest - 1e-9);
+    if (!(wanted < kMostShells))
+        throw InputError("shell map with shells " + std::to_string(settings.shell_ratio) + " widths apart: more than " +
+                         std::to_string(kMostShells) + " shells; ask for a larger ratio");
+    const int intervals = int(wanted);
+    std::vector<Shell> shells;
+    std::size_t stored = 0, baked = 0;
     for (int i = 0; i <= intervals; ++i) {
-        const double width = i == 0 ? rough
-                             : i == intervals
-                                 ? smooth
-                                 : std::pow(power(rough) - range * i / intervals, 1.0 / double(spacing_power));
+        const double between = power(rough) - range * i / std::max(intervals, 1);
+        const double width = i == 0 ? rough : i == intervals ? smooth : std::pow(between, 1 / double(spacing_power));
         Shell shell;
         shell.lobe = lobe_of_width(settings.kind, width);
         shell.width = float(width);
         shell.resolution = resolution_of(width, settings.texels_a_width);
-        shell.first = texel_count_;
-        shell.first_baked = layout_.size();
-        texel_count_ += 6 * face_texels(shell.resolution, border());
-        if (bytes() > (std::size_t(1) << 31) - 4)
-            throw InputError("shell map of more than 2 GB: ask for fewer texels a lobe's width, or rougher lobes");
+        shell.first = stored;
+        shell.first_baked = baked;
+        stored += 6 * face_texels(shell.resolution, border(settings.filter));
+        baked += 6 * face_texels(shell.resolution, baked_border(settings.filter));
+        shells.push_back(shell);
+    }
+    if (stored * texel_bytes(settings.format) > (std::size_t(1) << 31) - 4)
+        throw InputError("shell map of more than 2 GB: ask for fewer texels a lobe's width, or rougher lobes");
+    return shells;
+}
+
+ShellMap::ShellMap(const ShellSettings& settings) : settings_(settings), shells_(plan(settings)) {
+    first_power_ = float(power(shells_.front().width));
+    if (shells_.size() > 1)
+        shells_a_power_ = float(shells_.size() - 1) / (first_power_ - float(power(shells_.back().width)));
+    layout_.kind = settings.kind;
+    for (const Shell& shell : shells_) {
         add_directions(layout_.directions, shell.resolution, baked_border());
         layout_.parameters.resize(layout_.size(), float(shell.lobe.parameter));
-        shells_.push_back(shell);
     }
+    texel_count_ = shells_.back().first + 6 * face_texels(shells_.back().resolution, border());
     texels_.resize(bytes() + 4);
 }
 

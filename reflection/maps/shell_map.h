@@ -59,13 +59,17 @@ class ShellMap {
         std::size_t first = 0;       ///< index of its first stored texel; 6 (resolution + 2 border)² follow
         std::size_t first_baked = 0; ///< index of its first texel in layout(); 6 (resolution + 2 baked_border)² follow
     };
-    /// Throws InputError where the settings make no sense.
-    explicit ShellMap(const ShellSettings& settings);
+    /// The shells that a map with these settings has, before any memory is taken. Throws InputError where the settings
+    /// make no sense.
+    static std::vector<Shell> plan(const ShellSettings& settings);
+    explicit ShellMap(const ShellSettings& settings); ///< as plan()
     const ShellSettings& settings() const { return settings_; }
     const std::vector<Shell>& shells() const { return shells_; }
     const TexelLayout& layout() const { return layout_; } ///< for a baker
-    int border() const { return settings_.filter == TexelFilter::cubic ? 1 : 0; }
-    int baked_border() const { return settings_.filter == TexelFilter::cubic ? 5 : 1; }
+    int border() const { return border(settings_.filter); }
+    int baked_border() const { return baked_border(settings_.filter); }
+    static int border(TexelFilter filter) { return filter == TexelFilter::cubic ? 1 : 0; }
+    static int baked_border(TexelFilter filter) { return filter == TexelFilter::cubic ? 5 : 1; }
 
     void set_texels(std::span<const glm::vec3> filtered); ///< in the layout's order
     std::size_t texel_count() const { return texel_count_; }

@@ -1,0 +1,125 @@
+#include "reflection/maps/exr_notes.h"
+
+#include "common/scene/image_io.h"
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+#include "reflection/maps/cube_texels.h"
+
+#include <OpenImageIO/imageio.h>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstring>
+
+namespace kokage {
+namespace {
+
+constexpr const char* kPrefix = "kokage:";
+
+[[noreturn]] void fail_to_read(const std::filesystem::path& path, const std::string& why) {
+    throw InputError("cannot read map '" + path.string() + "': " + why);
+}
+
+[[noreturn]] void fail_to_write(const std::filesystem::path& path, const std::string& why) {
+    throw InputError("cannot write map '" + path.string() + "': " + why);
+}
+
+/// Of all notes but the checksum itself, then of the pixels.
+std::string checksum_of(const ExrNotes& notes, const Image& image) {
+    std::string text;
+    for (const auto& [key, value] : notes)
+        if (key != "checksum")
+            text += key + '=' + value + '\n';
+    const auto bytes = [](const auto* data, std::size_t count) {
+        return std::span(reinterpret_cast<const unsigned char*>(data), count * sizeof *data);
+    };
+    const std::uint64_t sum =
+        checksum(bytes(image.pixels.data(), image.pixels.size()), checksum(bytes(text.data(), text.size())));
+    std::array<char, 17> digits{};
+    std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(sum));
+    return digits.data();
+}
+
+std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
+    std::error_code error;
+    if (!std::filesystem::exists(path, error))
+        fail_to_read(path, "there is no such file");
+    if (!std::filesystem::is_regular_file(path, error))
+        fail_to_read(path, "it is no file");
+    use_our_thread_count();
+    auto input = OIIO::ImageInput::create("exr");
+    OIIO::ImageSpec spec;
+    if (!input || !input->open(path.string(), spec))
+        fail_to_read(path, "it is no EXR file, or damaged (" +
+                               one_line(input ? input->geterror() : OIIO::geterror(), "its header can't be read") +
+                               ")");
+    return input;
+}
+
+} // namespace
+
+void write_noted_exr(const std::filesystem::path& path, const Image& image, bool halves, const ExrNotes& notes) {
+    OIIO::ImageSpec spec(image.width, image.height, 3, halves ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("compression", "zip");
+    for (const auto& [key, value] : notes)
+        spec.attribute(kPrefix + key, value);
+    spec.attribute(std::string(kPrefix) + "checksum", checksum_of(notes, image));
+    use_our_thread_count();
+    OutputFile file(path);
+    const auto output = OIIO::ImageOutput::create("exr");
+    constexpr const char* disk = "the system did not take it (is the disk full?)";
+    if (!output)
+        fail_to_write(path, one_line(OIIO::geterror(), disk));
+    if (!output->open(file.temporary_path().string(), spec) ||
+        !output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) || !output->close())
+        fail_to_write(path, one_line(output->geterror(), disk));
+    file.commit();
+}
+
+ExrHeader read_exr_header(const std::filesystem::path& path) {
+    const auto input = open(path);
+    const OIIO::ImageSpec& spec = input->spec();
+    if (spec.deep || spec.depth > 1 || spec.nchannels != 3 || spec.width < 1 || spec.height < 1 || spec.x != 0 ||
+        spec.y != 0)
+        fail_to_read(path, "it is no plain picture of three channels, as maps are");
+    ExrHeader header{spec.width, spec.height, {}};
+    for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
+        const std::string name = attribute.name().string();
+        if (name.rfind(kPrefix, 0) == 0)
+            header.notes[name.substr(std::strlen(kPrefix))] = attribute.get_string();
+    }
+    return header;
+}
+
+Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header) {
+    // Deflate packs at most 1032 bytes into one (zlib's manual): a header that announces more is damaged.
+    std::error_code error;
+    const std::uint64_t pixels = std::uint64_t(header.width) * std::uint64_t(header.height);
+    if (pixels * 3 * 2 > 1032 * (std::uint64_t(std::filesystem::file_size(path, error)) + 64))
+        fail_to_read(path, "it is cut off: its header announces more pixels than its bytes can hold");
+    const auto input = open(path);
+    Image image(header.width, header.height, 3);
+    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+        fail_to_read(path, "it is damaged or cut off (" + one_line(input->geterror(), "its pixels can't be decoded") +
+                               "); bake it again");
+    const auto noted = header.notes.find("checksum");
+    if (noted == header.notes.end() || noted->second != checksum_of(header.notes, image))
+        fail_to_read(path, "its content is not what was written (the checksum differs); bake it again");
+    return image;
+}
+
+std::string number_text(double value) {
+    std::array<char, 32> text{};
+    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
+}
+
+std::optional<double> number_from_text(const std::string& text) {
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
+        return std::nullopt;
+    return value;
+}
+
+} // namespace kokage

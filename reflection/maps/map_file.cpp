@@ -1,0 +1,196 @@
+#include "reflection/maps/map_file.h"
+
+#include "common/services/error.h"
+#include "reflection/maps/exr_notes.h"
+#include "reflection/maps/shell_atlas.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+constexpr const char* kVersion = "1";
+constexpr const char *kShells = "shells", *kCube = "voxel cube";
+
+const char* filter_name(TexelFilter filter) {
+    return filter == TexelFilter::cubic ? "cubic" : "bilinear";
+}
+
+std::string shells_text(std::span<const ShellMap::Shell> shells, const ShellAtlas& atlas) {
+    std::string text;
+    for (std::size_t i = 0; i < shells.size(); ++i)
+        text += (i ? "; " : "") + number_text(shells[i].lobe.parameter) + " " + number_text(double(shells[i].width)) +
+                " " + std::to_string(shells[i].resolution) + " " + std::to_string(atlas.places[i].x) + " " +
+                std::to_string(atlas.places[i].y);
+    return text;
+}
+
+void check_finite(const Image& image, const std::filesystem::path& path) {
+    for (std::size_t i = 0; i < image.pixels.size(); ++i)
+        if (!std::isfinite(image.pixels[i])) {
+            const std::size_t pixel = i / 3, width = std::size_t(image.width);
+            throw InputError("cannot write map '" + path.string() + "': its pixel (" + std::to_string(pixel % width) +
+                             ", " + std::to_string(pixel / width) + ") is not finite; bake the map again");
+        }
+}
+
+/// What a map's notes say, checked.
+class NotesReader {
+  public:
+    NotesReader(const ExrNotes& notes, std::string name) : notes_(notes), name_(std::move(name)) {}
+    [[noreturn]] void fail(const std::string& why) const {
+        throw InputError("cannot read map '" + name_ + "': " + why + "; bake it again");
+    }
+    const std::string& text(const std::string& key) const {
+        const auto found = notes_.find(key);
+        if (found == notes_.end())
+            fail("its header lacks kokage:" + key);
+        return found->second;
+    }
+    double number(const std::string& key) const {
+        const auto value = number_from_text(text(key));
+        if (!value)
+            fail("its kokage:" + key + " is '" + text(key) + "', not a number");
+        return *value;
+    }
+    template <typename Value>
+    Value one_of(const std::string& key, std::initializer_list<std::pair<const char*, Value>> names) const {
+        for (const auto& [name, value] : names)
+            if (text(key) == name)
+                return value;
+        fail("its kokage:" + key + " is '" + text(key) + "', which this program does not know");
+    }
+    LobeKind lobe() const { return one_of<LobeKind>("lobe", {{"phong", LobeKind::phong}, {"ggx", LobeKind::ggx}}); }
+    TexelFormat format() const {
+        return one_of<TexelFormat>("format", {{"half", TexelFormat::half_rgb},
+                                              {"float", TexelFormat::float_rgb},
+                                              {"shared-exponent", TexelFormat::shared_exponent}});
+    }
+
+  private:
+    const ExrNotes& notes_;
+    std::string name_;
+};
+
+void check_size(const NotesReader& notes, const ExrHeader& header, int width, int height) {
+    if (header.width != width || header.height != height)
+        notes.fail("it is " + std::to_string(header.width) + " x " + std::to_string(header.height) +
+                   " pixels, but its header describes a map of " + std::to_string(width) + " x " +
+                   std::to_string(height));
+}
+
+ShellMap read_shells(const ExrHeader& header, const NotesReader& notes, const std::filesystem::path& path) {
+    ShellSettings settings;
+    settings.kind = notes.lobe();
+    settings.format = notes.format();
+    settings.filter =
+        notes.one_of<TexelFilter>("filter", {{"bilinear", TexelFilter::bilinear}, {"cubic", TexelFilter::cubic}});
+    settings.least_parameter = notes.number("least_parameter");
+    settings.most_parameter = notes.number("most_parameter");
+    settings.shell_ratio = notes.number("shell_ratio");
+    settings.texels_a_width = notes.number("texels_a_width");
+    std::vector<ShellMap::Shell> shells;
+    try {
+        shells = ShellMap::plan(settings);
+    } catch (const InputError& error) {
+        notes.fail(std::string("its header describes no map (") + error.what() + ")");
+    }
+    const ShellAtlas atlas = shell_atlas(shells, ShellMap::border(settings.filter));
+    check_size(notes, header, atlas.width, atlas.height);
+    const Image image = read_noted_exr(path, header);
+    ShellMap map(settings);
+    set_atlas_image(map, atlas, image);
+    return map;
+}
+
+VoxelCube read_cube(const ExrHeader& header, const NotesReader& notes, const std::filesystem::path& path) {
+    const double size = notes.number("cube_size");
+    if (!(size >= 4 && size <= 1022 && size == std::floor(size)))
+        notes.fail("its kokage:cube_size is '" + notes.text("cube_size") + "'");
+    const int width = int(size) + 2;
+    check_size(notes, header, width, width * width);
+    const Image image = read_noted_exr(path, header);
+    try {
+        VoxelCube cube(notes.lobe(), RoughnessScale::with_u(notes.number("u"), int(size), notes.number("levels")));
+        std::vector<glm::vec3> texels;
+        for (const std::size_t voxel : cube.voxel_of_texel())
+            texels.emplace_back(image.pixels[3 * voxel], image.pixels[3 * voxel + 1], image.pixels[3 * voxel + 2]);
+        cube.set_texels(texels);
+        return cube;
+    } catch (const InputError& error) {
+        notes.fail(error.what());
+    }
+}
+
+} // namespace
+
+void write_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from) {
+    const ShellSettings& settings = map.settings();
+    const ShellAtlas atlas = shell_atlas(map.shells(), map.border());
+    const Image image = atlas_image(map, atlas);
+    check_finite(image, path);
+    ExrNotes notes = {{"map", kShells},
+                      {"layout_version", kVersion},
+                      {"lobe", std::string(lobe_kind_name(settings.kind))},
+                      {"format", std::string(texel_format_name(settings.format))},
+                      {"filter", filter_name(settings.filter)},
+                      {"least_parameter", number_text(settings.least_parameter)},
+                      {"most_parameter", number_text(settings.most_parameter)},
+                      {"shell_ratio", number_text(settings.shell_ratio)},
+                      {"texels_a_width", number_text(settings.texels_a_width)},
+                      {"shells", shells_text(map.shells(), atlas)}};
+    if (!made_from.empty())
+        notes["made_from"] = made_from;
+    write_noted_exr(path, image, settings.format != TexelFormat::float_rgb, notes);
+}
+
+void write_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format,
+               const std::string& made_from) {
+    if (format == TexelFormat::shared_exponent)
+        throw InputError("cannot write map '" + path.string() + "': voxels are kept as halves or floats");
+    Image image(cube.size(), cube.size() * cube.size(), 3);
+    const auto packed = packed_texels(cube.voxels(), format);
+    for (std::size_t i = 0; i < cube.voxels().size(); ++i) {
+        const glm::vec3 colour = unpacked_texel(packed.data() + i * texel_bytes(format), format);
+        std::copy_n(&colour.x, 3, image.pixels.begin() + std::ptrdiff_t(3 * i));
+    }
+    check_finite(image, path);
+    ExrNotes notes = {{"map", kCube},
+                      {"layout_version", kVersion},
+                      {"lobe", std::string(lobe_kind_name(cube.layout().kind))},
+                      {"format", std::string(texel_format_name(format))},
+                      {"cube_size", std::to_string(cube.scale().cube_size())},
+                      {"levels", number_text(cube.scale().levels())},
+                      {"u", number_text(cube.scale().u())}};
+    if (!made_from.empty())
+        notes["made_from"] = made_from;
+    write_noted_exr(path, image, format == TexelFormat::half_rgb, notes);
+}
+
+MapFile read_map(const std::filesystem::path& path) {
+    const ExrHeader header = read_exr_header(path);
+    const NotesReader notes(header.notes, path.string());
+    if (!header.notes.count("map"))
+        throw InputError("cannot read map '" + path.string() +
+                         "': it is a picture without the attributes of a map; give an .exr that kokage bake wrote");
+    if (notes.text("layout_version") != kVersion)
+        notes.fail("its layout has the version '" + notes.text("layout_version") + "', this program reads version " +
+                   kVersion);
+    const std::string made_from = header.notes.count("made_from") ? notes.text("made_from") : "";
+    if (notes.text("map") == kShells)
+        return {read_shells(header, notes, path), made_from};
+    if (notes.text("map") == kCube)
+        return {read_cube(header, notes, path), made_from};
+    notes.fail("it holds '" + notes.text("map") + "', which is neither shells nor a voxel cube");
+}
+
+bool is_map_file(const std::filesystem::path& path) {
+    try {
+        return read_exr_header(path).notes.count("map") > 0;
+    } catch (const InputError&) {
+        return false;
+    }
+}
+
+} // namespace kokage
