@@ -24,14 +24,6 @@ std::string color_text(const glm::vec3& c) {
     return formatted("%.3f, ", double(c.r)) + formatted("%.3f, ", double(c.g)) + formatted("%.3f", double(c.b));
 }
 
-std::string length_text(double metres) {
-    return metres < 0.995 ? formatted("%.3g cm", 100 * metres) : formatted("%.3g m", metres);
-}
-
-std::string area_text(double square_metres) {
-    return square_metres < 0.1 ? formatted("%.3g cm2", 1e4 * square_metres) : formatted("%.4g m2", square_metres);
-}
-
 void measure(const Tree& tree, TreeDescription& d) {
     const PatchScene scene = make_patches(tree);
     const Bounds box = bounds_of(scene);
@@ -168,7 +160,7 @@ std::string text_of(const TreeDescription& d) {
     std::string text = "tree         " + shown_name(d.name) + " (" + without_controls(d.source) + ")\n";
     text += "size         " + length_text(size.y) + " high, " + length_text(size.x) + " x " + length_text(size.z) +
             " wide; crown radius " + length_text(d.crown_radius_m) + "; lowest point at height " +
-            formatted("%.4g m", d.low.y) + "\n";
+            (d.low.y < 0 ? "-" : "") + length_text(std::abs(d.low.y)) + "\n";
     text += "leaves       " + count_text(d.leaves);
     if (d.leaves > 0)
         text += ", " + area_text(d.leaf_area_m2) + " together (one side), median " + area_text(d.median_leaf_m2) +

@@ -15,19 +15,12 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <numeric>
 #include <set>
 
 namespace kokage {
 namespace {
-
-std::string metres_text(float metres) {
-    char text[32];
-    std::snprintf(text, sizeof text, "%.3g m", double(metres));
-    return text;
-}
 
 double area_of(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
     const glm::dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
@@ -294,15 +287,15 @@ Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions
         parts[part_index(foliage[m].material, TreePartKind::foliage)].append(foliage[m], leaves.leaf_of[m], 0);
     const std::uint32_t leaf_count = leaves.count;
     if (options.leaf_size > 0 && options.leaf_size < 1e-3f * crown)
-        tree.notes.push_back("the leaf size, " + metres_text(options.leaf_size) +
-                             ", is less than a thousandth of the " + "crown's radius of " + metres_text(crown) +
+        tree.notes.push_back("the leaf size, " + length_text(options.leaf_size) +
+                             ", is less than a thousandth of the " + "crown's radius of " + length_text(crown) +
                              ": foliage falls apart into its triangles if that is not what leaves measure");
     if (leaf_count == 0)
         tree.notes.push_back("no foliage was found: say which material or mesh it is");
     else
         tree.notes.push_back(counted(leaf_count, "leaf", "leaves") +
                              ": connected foliage, cut where it turns by more than 30 degrees or is larger than " +
-                             metres_text(leaves.largest_radius_m) + " in radius");
+                             length_text(leaves.largest_radius_m) + " in radius");
     if (leaves.stalks > 0)
         tree.notes.push_back(counted(leaves.stalks, "stalk was", "stalks were") + " joined to their leaves");
 

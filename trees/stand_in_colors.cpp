@@ -1,5 +1,7 @@
 #include "trees/stand_in_colors.h"
 
+#include "common/services/named_file.h"
+
 #include <map>
 
 namespace kokage {
@@ -30,10 +32,10 @@ std::vector<std::string> stand_in_for_lost_colors(MeshScene& scene, const std::v
                 glm::vec4(glm::vec3(material.base_color) * (is_leaf ? kLeaf : kBark), material.base_color.a);
             material.color_is_lost = false;
             if (material.is_missing)
-                notes.push_back(is_leaf ? "leaves without a material (mesh '" + mesh.name +
+                notes.push_back(is_leaf ? "leaves without a material (mesh '" + shown_name(mesh.name) +
                                               "') take an average leaf's: they reflect 0.10, 0.25, 0.06 and let 0.8 of "
                                               "that through"
-                                        : "bark without a material (mesh '" + mesh.name +
+                                        : "bark without a material (mesh '" + shown_name(mesh.name) +
                                               "') takes average bark's: it reflects 0.15, 0.10, 0.07");
             scene.materials.push_back(std::move(material));
         }

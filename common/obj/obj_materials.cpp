@@ -274,11 +274,12 @@ int ObjMaterials::index_of(const std::string& name) {
         material.name = name.empty() ? "default" : name;
         material.is_missing = name.empty();
         material.double_sided = true;
-        material.color_is_lost = true;
+        material.color_is_lost = !vertices_have_colors_;
         options_.emplace_back();
         if (!name.empty() && notes_.size() < 100)
-            notes_.push_back("material '" + shown_name(name) +
-                             "' is described nowhere: a plain colour stands in for it");
+            notes_.push_back(
+                "material '" + shown_name(name) + "' is described nowhere: " +
+                (vertices_have_colors_ ? "the vertices' colours are taken" : "a plain colour stands in for it"));
     }
     return found->second;
 }

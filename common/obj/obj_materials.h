@@ -18,6 +18,8 @@ class ObjMaterials {
 
     /// From now on Kd is linear whatever an MTL says of itself; else it is so where Blender wrote the MTL.
     void take_kd_as_linear() { kd_is_linear_ = true; }
+    /// From now on what no MTL describes is white, and coloured by its vertices.
+    void take_colors_of_vertices() { vertices_have_colors_ = true; }
 
     /// Reads the file or files that a `mtllib` line names; one that is not there is noted.
     void read_library(const std::string& names);
@@ -43,7 +45,7 @@ class ObjMaterials {
     std::map<std::string, int> by_name_;
     std::map<std::string, Image> images_; ///< by path
     std::uint64_t pixels_ = 0;
-    bool kd_is_linear_ = false;
+    bool kd_is_linear_ = false, vertices_have_colors_ = false;
     friend class MaterialTextures;
 };
 

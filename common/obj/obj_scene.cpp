@@ -60,6 +60,8 @@ class ObjReader {
     MeshScene read() {
         std::vector<unsigned char> bytes = read_file_bytes(path_, kMaximumFile);
         read_lines(bytes);
+        if (!colors_.empty())
+            materials_.take_colors_of_vertices();
         progress_.throw_if_stopped();
         ByteStream buffer(bytes);
         std::istream stream(&buffer);

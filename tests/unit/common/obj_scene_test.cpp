@@ -69,6 +69,14 @@ TEST(ObjScene, VerticesMayHaveColors) {
                                {{"tree.mtl", "newmtl leaf\nKd 0.5 0.5 0.5\n"}});
     EXPECT_NEAR(lit.materials[0].base_color.r, linear_from_srgb(0.5f), 1e-6f) << "the two are multiplied, as in glTF";
     EXPECT_EQ(lit.meshes[0].colors[0], glm::vec4(1, 0, 0, 1));
+    // What no file describes is as its vertices are.
+    const std::string red = "v 0 0 0 1 0 0\nv 1 0 0 1 0 0\nv 1 1 0 1 0 0\n";
+    for (const std::string use : {"", "usemtl leaf\n"}) {
+        const MeshScene alone = load(red + use + "f 1 2 3\n");
+        EXPECT_FALSE(alone.materials[0].color_is_lost) << use;
+        EXPECT_EQ(alone.materials[0].base_color, glm::vec4(1)) << use;
+    }
+    EXPECT_TRUE(load("v 0 0 0\nv 1 0 0\nv 1 1 0\nusemtl leaf\nf 1 2 3\n").materials[0].color_is_lost);
 }
 
 TEST(ObjScene, ColorsAreLinearWhereBlenderWroteThem) {
