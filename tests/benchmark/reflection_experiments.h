@@ -36,6 +36,10 @@ void measure_video(const ExperimentContext& context);
 /// "skips": what baking only smoothness 0.3 to 0.6 saves.
 void measure_skips(const ExperimentContext& context);
 
+/// "cmgen": a GGX cube map of 256 with five levels from HDR files of 1024 x 512, by cmgen (where it is installed) and
+/// by ours, reading and writing counted.
+void measure_cmgen(const ExperimentContext& context);
+
 /// Surroundings of at most 1 that errors of 255 are told in: the pattern, and the photograph where there is data.
 std::vector<Environment> clamped_surroundings(const ExperimentContext& context);
 

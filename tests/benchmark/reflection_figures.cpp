@@ -2,6 +2,7 @@
 #include "tests/benchmark/reflection_tables.h"
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <optional>
 
@@ -82,6 +83,36 @@ std::string hdr_rows(const Records& records) {
                    0.3, " s");
 }
 
+/// The least, over all surroundings, of a figure of cmgen's divided by ours.
+std::optional<double> least_advantage(const Records& records, const std::string& ours, Field field) {
+    std::optional<double> least;
+    for (const ReflectionRecord& peer : records) {
+        if (peer.experiment != "cmgen" || peer.method != "cmgen" || peer.smoothness || !(peer.*field))
+            continue;
+        const Condition same = [&](const ReflectionRecord& r) {
+            return of("cmgen", ours, 0, peer.environment)(r) && !r.smoothness;
+        };
+        if (const std::optional<double> mine = worst(records, same, field); mine && *mine > 0)
+            least = std::min(least.value_or(HUGE_VAL), *(peer.*field) / *mine);
+    }
+    return least;
+}
+
+std::string cmgen_rows(const Records& records) {
+    const Condition whole = [](const ReflectionRecord& r) { return of("cmgen", "spectral")(r) && !r.smoothness; };
+    const Condition levels = [](const ReflectionRecord& r) {
+        return of("cmgen", "spectral")(r) && r.smoothness.has_value();
+    };
+    return at_most("GGX cube map of 256²: CPU with reading and writing",
+                   worst(records, whole, &ReflectionRecord::cpu_seconds), 0.3, " s") +
+           at_most("GGX cube map of 256²: mean error of each filtered level, % of mean radiance",
+                   times(worst(records, levels, &ReflectionRecord::mean_error_of_mean), 100), 0.1, " %") +
+           at_least("GGX cube map: times less CPU than cmgen",
+                    least_advantage(records, "spectral-coarse", &ReflectionRecord::cpu_seconds), 50, "") +
+           at_least("the same cube map: times smaller error than cmgen",
+                    least_advantage(records, "spectral-coarse", &ReflectionRecord::mean_error_of_mean), 10, "");
+}
+
 } // namespace
 
 std::string reflection_figures(const Records& records) {
@@ -99,7 +130,7 @@ std::string reflection_figures(const Records& records) {
            at_least("spectral 64³: video on 2 cores",
                     worst(records, of("video", "spectral", 64), &ReflectionRecord::frames_per_second, false), 60,
                     " frames/s") +
-           hdr_rows(records) + container_rows(records);
+           hdr_rows(records) + container_rows(records) + cmgen_rows(records);
 }
 
 } // namespace kokage

@@ -33,6 +33,7 @@ nlohmann::json to_json(const ReflectionRecord& record) {
         {"max_error_255", number(record.max_error_255)},
         {"mean_relative_error", number(record.mean_relative_error)},
         {"max_relative_error", number(record.max_relative_error)},
+        {"mean_error_of_mean", number(record.mean_error_of_mean)},
         {"note", record.note},
     };
 }

@@ -25,6 +25,7 @@ struct ReflectionRecord {
     std::optional<double> max_error_255;
     std::optional<double> mean_relative_error; ///< of |x - ref| / max(ref, 1e-3 of the reference's mean)
     std::optional<double> max_relative_error;
+    std::optional<double> mean_error_of_mean; ///< mean of |x - ref| over the surroundings' mean radiance
     std::string note; ///< what the numbers can't say: pixel format, number of samples judged, what was left out
 };
 

@@ -84,6 +84,7 @@ std::vector<std::string> cells_of(const ReflectionRecord& r) {
             three_digits(r.max_error_255),
             three_digits(r.mean_relative_error, 1e2),
             three_digits(r.max_relative_error, 1e2),
+            three_digits(r.mean_error_of_mean, 1e2),
             r.note};
 }
 
@@ -121,8 +122,9 @@ std::string reflection_tables(const Records& records) {
     for (const std::string& experiment : experiments) {
         text += "\n### " + experiment + "\n\n" +
                 markdown_row({"surroundings", "method", "lobe", "size", "threshold", "smoothness", "set-up CPU s",
-                              "CPU s", "texels", "MB", "mean /255", "max /255", "mean rel. %", "max rel. %", "note"}) +
-                markdown_row(std::vector<std::string>(15, "---"));
+                              "CPU s", "texels", "MB", "mean /255", "max /255", "mean rel. %", "max rel. %",
+                              "mean, % of mean radiance", "note"}) +
+                markdown_row(std::vector<std::string>(16, "---"));
         for (const ReflectionRecord& r : records)
             if (r.experiment == experiment)
                 text += markdown_row(cells_of(r));
