@@ -1,30 +1,58 @@
 #pragma once
 // The light that a surface can't see: what a lobe loses below the horizon (DESIGN §5). [R] eq 5 drops the test cos φ >=
-// 0 and so lets light from below the horizon in; this puts it back, to first order, without more lookups.
+// 0 and so lets light from below the horizon in; this takes it out, to second order, with one or two lookups in the
+// same map.
 #include "common/types.h"
 #include "reflection/maps/lobe.h"
 
+#include <string_view>
 #include <vector>
 
 namespace kokage {
 
-/// How to look up instead of at (r, Λ): radiance = share x F(direction, parameter).
+enum class HorizonCorrection {
+    none,        ///< [R] eq 3: radiance = F(r, Λ)
+    one_lookup,  ///< share, mean direction and width of the lobe's part above the horizon
+    two_lookups, ///< that part is narrower across the horizon than along it: two lobes beside each other (default)
+};
+std::string_view horizon_correction_name(HorizonCorrection correction);
+/// "none", "one-lookup", "two-lookups"; throws InputError that lists them.
+HorizonCorrection horizon_correction_from_name(std::string_view name);
+
+/// How to look up instead of at (r, Λ): radiance = share x mean over `count` of F(directions[i], parameter).
 struct HorizonLookup {
-    glm::vec3 direction; ///< r': mean direction of the lobe's part above the horizon
-    float parameter;     ///< Λ' >= Λ: of the lobe as narrow as that part
-    float share;         ///< H: that part's share of the lobe's mass
+    glm::vec3 directions[2];
+    int count;       ///< 1 or 2
+    float parameter; ///< of a lobe as narrow as the part above the horizon: Λ' >= Λ, roughness' <= roughness
+    float share;     ///< that part's share of the lobe's mass
 };
 
-/// A table over (n·r, lobe), made once; thread-safe.
+/// A table over (n·r, lobe), made once (some 50 ms); thread-safe. Errors of one and two lookups against the clipped
+/// lobe are in horizon.cpp.
 class HorizonTable {
   public:
-    explicit HorizonTable(LobeKind kind);
+    explicit HorizonTable(LobeKind kind, HorizonCorrection correction = HorizonCorrection::two_lookups);
+    /// `normal` and `mirrored` are unit; the mirrored direction may lie below the horizon, as those of smoothed normals
+    /// do. `parameter`: Phong's Λ > 0, GGX's roughness in (0,1].
     HorizonLookup lookup(const glm::vec3& normal, const glm::vec3& mirrored, double parameter) const;
 
   private:
     LobeKind kind_;
-    int columns_ = 0, rows_ = 0;
-    std::vector<glm::vec3> cells_; ///< share, sine of the turn towards the normal, Λ'/Λ
+    HorizonCorrection correction_;
+    /// share, turn towards the normal and half the distance of the two lookups (in the lobe's widths), ratio of
+    /// widths squared; row by row, one lobe each
+    std::vector<glm::vec4> cells_;
 };
+
+/// Radiance through a lobe above the horizon, from any map: look_up(direction, parameter).
+template <typename LookUp>
+glm::vec3 filtered_above_horizon(const HorizonTable& table, const glm::vec3& normal, const glm::vec3& mirrored,
+                                 double parameter, LookUp&& look_up) {
+    const HorizonLookup at = table.lookup(normal, mirrored, parameter);
+    glm::vec3 sum = look_up(at.directions[0], at.parameter);
+    if (at.count == 2)
+        sum = 0.5f * (sum + look_up(at.directions[1], at.parameter));
+    return at.share * sum;
+}
 
 } // namespace kokage

@@ -8,18 +8,18 @@
 namespace kokage {
 namespace {
 
-/// How much of the circle at `angle_from_lobe` around the lobe's axis lies in the cone, in radians: the angle at the
-/// axis of a spherical triangle with the sides `between`, `angle_from_lobe` and, opposite, `half_angle`, twice.
+/// Half of the circle at `angle_from_lobe` around the lobe's axis that lies in the cone, in radians: the angle at the
+/// axis of a spherical triangle with the sides `between`, `angle_from_lobe` and, opposite, `half_angle`.
 /// sin²(B/2) = sin(s-a) sin(s-c) / (sin a sin c) keeps its digits for small triangles.
-double arc_in_cone(double angle_from_lobe, double between, double half_angle) {
+double half_arc_in_cone(double angle_from_lobe, double between, double half_angle) {
     if (angle_from_lobe + between <= half_angle || 2 * kPiDouble - angle_from_lobe - between <= half_angle)
-        return 2 * kPiDouble;
+        return kPiDouble;
     const double first = half_angle + angle_from_lobe - between, second = half_angle + between - angle_from_lobe;
     if (first <= 0 || second <= 0)
         return 0;
     const double sines = std::sin(angle_from_lobe) * std::sin(between);
     const double squared = sines > 0 ? std::sin(0.5 * first) * std::sin(0.5 * second) / sines : 1;
-    return 4 * std::asin(std::sqrt(std::clamp(squared, 0.0, 1.0)));
+    return 2 * std::asin(std::sqrt(std::clamp(squared, 0.0, 1.0)));
 }
 
 /// Where the integrand bends: the cone's nearest and farthest point, and steps that grow with the distance from the
@@ -42,27 +42,34 @@ std::vector<double> borders_of(const Lobe& lobe, double between, double half_ang
 
 } // namespace
 
-double lobe_over_cone(const Lobe& lobe, double angle, double half_angle) {
+std::vector<LobeArc> arcs_in_cone(const Lobe& lobe, double angle, double half_angle) {
     static const std::vector<QuadratureNode> rule = gauss_legendre(32);
-    if (!(half_angle > 0))
-        return 0;
     const double reach = 2 * std::asin(std::sqrt(0.25 * lobe_reach(lobe, 1e-20)));
     const std::vector<double> borders = borders_of(lobe, angle, half_angle);
-    double sum = 0;
+    std::vector<LobeArc> arcs;
     for (std::size_t piece = 1; piece < borders.size() && borders[piece - 1] < reach; ++piece) {
         const double half = 0.5 * (borders[piece] - borders[piece - 1]),
                      middle = 0.5 * (borders[piece] + borders[piece - 1]);
-        if (half <= 0 || arc_in_cone(middle, angle, half_angle) == 0)
+        if (half <= 0 || half_arc_in_cone(middle, angle, half_angle) == 0)
             continue;
         // The arc has the root of the distance from the cone's ends: theta = middle + half sin(psi) removes it.
         for (const QuadratureNode& node : rule) {
             const double psi = 0.5 * kPiDouble * node.x;
             const double theta = middle + half * std::sin(psi);
+            const double step = 0.5 * kPiDouble * node.weight * half * std::cos(psi);
             const double chord = 2 * std::sin(0.5 * theta);
-            sum += 0.5 * kPiDouble * node.weight * half * std::cos(psi) * std::sin(theta) *
-                   arc_in_cone(theta, angle, half_angle) * lobe_value(lobe, chord * chord);
+            arcs.push_back({theta, half_arc_in_cone(theta, angle, half_angle),
+                            step * std::sin(theta) * lobe_value(lobe, chord * chord)});
         }
     }
+    return arcs;
+}
+
+double lobe_over_cone(const Lobe& lobe, double angle, double half_angle) {
+    double sum = 0;
+    if (half_angle > 0)
+        for (const LobeArc& arc : arcs_in_cone(lobe, angle, half_angle))
+            sum += 2 * arc.half_arc * arc.mass;
     return sum;
 }
 

@@ -11,6 +11,15 @@ namespace kokage {
 /// cone is known.
 double lobe_over_cone(const Lobe& lobe, double angle, double half_angle);
 
+/// A quadrature over that cone in circles around the lobe's axis.
+struct LobeArc {
+    double angle;    ///< of the circle from the lobe's axis
+    double half_arc; ///< radians of it, on either side of the meridian towards the cone's axis, that lie in the cone
+    double mass;     ///< lobe's value x sin(angle) d(angle): the circle's share of the lobe's mass, a radian
+};
+/// Circles that the cone doesn't meet are left out.
+std::vector<LobeArc> arcs_in_cone(const Lobe& lobe, double angle, double half_angle);
+
 /// Radiance of a light at infinity as the lobe around a unit direction shows it. A light without extent counts by the
 /// lobe's value towards it.
 glm::dvec3 light_through_lobe(const DistantLight& light, const Lobe& lobe, const glm::dvec3& direction);
