@@ -24,13 +24,15 @@ struct LatLongPlanes {
 
 /// Sum of weights, and of weights times pixels.
 struct LobeSums {
-    double weight = 0;
+    double weight = 0; ///< of the whole lobe, also where a horizon cuts it
     glm::dvec3 radiance{0.0};
 };
 
 /// Over all pixels within the squared distance `reach` (and some beyond it) of a unit direction:
-/// weight = dω (lobe relative to its value at the squared distance `nearest`).
+/// weight = dω (lobe relative to its value at the squared distance `nearest`). With a horizon (a unit normal; may be
+/// null) a pixel counts by the share of its area above it: [R] eq 2's test cos φ >= 0, pixels being areas and not
+/// points.
 LobeSums sum_over_lobe(const LatLongPlanes& planes, const Lobe& lobe, const glm::dvec3& direction, double reach,
-                       double nearest);
+                       double nearest, const glm::dvec3* horizon = nullptr);
 
 } // namespace kokage
