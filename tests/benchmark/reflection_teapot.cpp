@@ -4,6 +4,7 @@
 #include "common/scene/image_file.h"
 #include "common/services/stopwatch.h"
 #include "reflection/compare_images.h"
+#include "reflection/maps/brute_force_baker.h"
 #include "reflection/maps/glossy_picture.h"
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/spectral_baker.h"
@@ -39,7 +40,7 @@ Scene teapot_scene(const TeapotSettings& settings) {
     scene.middle = bounds.centre().y;
     Camera camera;
     camera.target = bounds.centre();
-    camera.position = bounds.centre() + 1.75f * bounds.diagonal() * glm::normalize(glm::vec3(0.35f, 0.45f, 1.f));
+    camera.position = bounds.centre() + 1.2f * bounds.diagonal() * glm::normalize(glm::vec3(0.35f, 0.45f, 1.f));
     scene.camera_position = camera.position;
     scene.pixels = surface_in_view(scene.object, camera, settings.width, settings.height);
     return scene;
@@ -132,6 +133,7 @@ class Measurement {
         by_shells(surface, "shells-one-lookup", exponents, HorizonCorrection::one_lookup, reference);
         const std::vector<glm::vec3> uncorrected =
             by_shells(surface, "shells-uncorrected", exponents, HorizonCorrection::none, reference);
+        by_exact_lookups(surface, exponents, reference);
         by_cube(surface, exponents, reference);
         as_the_paper(surface, reference);
         save(surface, "reference", picture_of(scene_.pixels, reference));
@@ -179,6 +181,8 @@ class Measurement {
         record.mean_error_255 = errors.mean;
         record.max_error_255 = errors.most;
         const bool cube = method.starts_with("cube");
+        if (method == "exact-lookup")
+            return values;
         record.size = cube ? settings_.cube_size : 0;
         record.setup_cpu_seconds = cube ? maps_.cube_cpu : maps_.shell_cpu;
         record.texels = double(cube ? maps_.cube.layout().size() : maps_.shells.layout().size());
@@ -194,6 +198,22 @@ class Measurement {
             return reflected_from_map(
                 scene_.pixels, exponents,
                 [&](const glm::vec3& d, float exponent) { return maps_.shells.lookup(d, double(exponent)); }, horizon);
+        });
+    }
+
+    /// What the horizon's correction alone is wrong by: lookups without a container.
+    void by_exact_lookups(const Surface& surface, const std::vector<float>& exponents,
+                          const std::vector<glm::vec3>& reference) {
+        const HorizonTable horizon(LobeKind::phong);
+        LatLongPlanes planes(environment_.remainder.width, environment_.remainder.height);
+        planes.set_pixels(environment_.remainder);
+        judged(surface, "exact-lookup", reference, [&] {
+            return reflected_from_map(
+                scene_.pixels, exponents,
+                [&](const glm::vec3& d, float exponent) {
+                    return glm::vec3(filtered_image(planes, {LobeKind::phong, double(exponent)}, glm::dvec3(d), 1e-9));
+                },
+                horizon);
         });
     }
 
@@ -256,12 +276,22 @@ class Measurement {
     std::vector<ReflectionRecord>& records_;
 };
 
+/// As an 8-bit photograph would have it.
+Image clamped(Image image) {
+    for (float& value : image.pixels)
+        value = std::min(value, 1.f);
+    return image;
+}
+
 std::vector<Environment> environments(const TeapotSettings& settings) {
     std::vector<Environment> all;
     all.push_back(unsplit(colour_pattern(), "pattern"));
     all.push_back(unsplit(photograph(settings.data_folder), "photograph"));
-    if (!settings.quick)
-        all.push_back(unsplit(real_hdr(settings.data_folder, "forest_slope.hdr", 512), "forest_slope"));
+    if (settings.quick)
+        return all;
+    const Image forest = real_hdr(settings.data_folder, "forest_slope.hdr", 512);
+    all.push_back(unsplit(clamped(forest), "forest_slope"));
+    all.push_back(unsplit(forest, "forest_slope-hdr"));
     return all;
 }
 
