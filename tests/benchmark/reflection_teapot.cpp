@@ -13,6 +13,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <utility>
 
 namespace kokage {
 namespace {
@@ -71,32 +73,37 @@ std::vector<float> exponents_of(const std::vector<float>& smoothness, const Roug
     return exponents;
 }
 
-/// Both containers of one environment, and what they cost.
+/// A container of one environment, and the CPU seconds of its set-up and bake.
+template <typename Container>
+struct Baked {
+    Container map;
+    double cpu = 0;
+};
+
 struct Maps {
-    ShellMap shells;
-    VoxelCube cube;
-    double shell_cpu = 0, cube_cpu = 0; ///< set-up and bake
+    Baked<ShellMap> cubic, bilinear;
+    Baked<VoxelCube> cube;
 };
 
 template <typename Container>
-double bake_into(Container& container, const Environment& environment, Progress& progress) {
+Baked<Container> baked(Container container, const Environment& environment, Progress& progress) {
     const Stopwatch watch;
     WorkReport report;
     std::vector<glm::vec3> filtered(container.layout().size());
     spectral_baker(container.layout(), environment.remainder.width, environment.remainder.height, {}, report, progress)
         ->bake(environment, filtered, report, progress);
     container.set_texels(filtered);
-    return watch.cpu();
+    return {std::move(container), watch.cpu()};
 }
 
 Maps baked_maps(const Environment& environment, const RoughnessScale& scale, Progress& progress) {
-    ShellSettings settings;
+    ShellSettings settings; // only what the teapot uses
     settings.least_parameter = scale.exponent(0.1);
     settings.most_parameter = scale.exponent(1);
-    Maps maps{ShellMap(settings), VoxelCube(LobeKind::phong, scale)};
-    maps.shell_cpu = bake_into(maps.shells, environment, progress);
-    maps.cube_cpu = bake_into(maps.cube, environment, progress);
-    return maps;
+    ShellSettings cubic = settings;
+    cubic.filter = TexelFilter::cubic;
+    return {baked(ShellMap(cubic), environment, progress), baked(ShellMap(settings), environment, progress),
+            baked(VoxelCube(LobeKind::phong, scale), environment, progress)};
 }
 
 struct Errors {
@@ -129,10 +136,11 @@ class Measurement {
         const std::vector<float> exponents = exponents_of(smoothness, scale_);
         std::vector<glm::vec3> reference = truth(surface, exponents, progress, "brute-force");
         const std::vector<glm::vec3> best =
-            by_shells(surface, "shells", exponents, HorizonCorrection::two_lookups, reference);
-        by_shells(surface, "shells-one-lookup", exponents, HorizonCorrection::one_lookup, reference);
+            by_shells(surface, "shells", maps_.cubic, exponents, HorizonCorrection::two_lookups, reference);
+        by_shells(surface, "shells-bilinear", maps_.bilinear, exponents, HorizonCorrection::two_lookups, reference);
+        by_shells(surface, "shells-one-lookup", maps_.cubic, exponents, HorizonCorrection::one_lookup, reference);
         const std::vector<glm::vec3> uncorrected =
-            by_shells(surface, "shells-uncorrected", exponents, HorizonCorrection::none, reference);
+            by_shells(surface, "shells-uncorrected", maps_.cubic, exponents, HorizonCorrection::none, reference);
         by_exact_lookups(surface, exponents, reference);
         by_cube(surface, exponents, reference);
         as_the_paper(surface, reference);
@@ -144,7 +152,7 @@ class Measurement {
             return;
         const std::vector<float> of_vertices = exponents_of(smoothness_of_vertices(surface, scene_), scale_);
         reference = truth(surface, of_vertices, progress, "brute-force-vertex");
-        by_shells(surface, "shells-vertex", of_vertices, HorizonCorrection::two_lookups, reference);
+        by_shells(surface, "shells-vertex", maps_.cubic, of_vertices, HorizonCorrection::two_lookups, reference);
     }
 
   private:
@@ -171,6 +179,7 @@ class Measurement {
         return values;
     }
 
+    /// A record of a picture that is drawn by `draw`, its errors set; the picture itself.
     std::vector<glm::vec3> judged(const Surface& surface, const std::string& method,
                                   const std::vector<glm::vec3>& reference,
                                   const std::function<std::vector<glm::vec3>()>& draw) {
@@ -180,25 +189,28 @@ class Measurement {
         const Errors errors = errors_of(values, reference);
         record.mean_error_255 = errors.mean;
         record.max_error_255 = errors.most;
-        const bool cube = method.starts_with("cube");
-        if (method == "exact-lookup")
-            return values;
-        record.size = cube ? settings_.cube_size : 0;
-        record.setup_cpu_seconds = cube ? maps_.cube_cpu : maps_.shell_cpu;
-        record.texels = double(cube ? maps_.cube.layout().size() : maps_.shells.layout().size());
-        record.bytes = double(cube ? maps_.cube.voxels().size_bytes() : maps_.shells.bytes());
         return values;
     }
 
-    std::vector<glm::vec3> by_shells(const Surface& surface, const std::string& method,
+    template <typename Container>
+    void tell_costs(const Baked<Container>& container, double bytes) {
+        ReflectionRecord& record = records_.back();
+        record.setup_cpu_seconds = container.cpu;
+        record.texels = double(container.map.layout().size());
+        record.bytes = bytes;
+    }
+
+    std::vector<glm::vec3> by_shells(const Surface& surface, const std::string& method, const Baked<ShellMap>& shells,
                                      const std::vector<float>& exponents, HorizonCorrection correction,
                                      const std::vector<glm::vec3>& reference) {
         const HorizonTable horizon(LobeKind::phong, correction);
-        return judged(surface, method, reference, [&] {
+        std::vector<glm::vec3> values = judged(surface, method, reference, [&] {
             return reflected_from_map(
                 scene_.pixels, exponents,
-                [&](const glm::vec3& d, float exponent) { return maps_.shells.lookup(d, double(exponent)); }, horizon);
+                [&](const glm::vec3& d, float exponent) { return shells.map.lookup(d, double(exponent)); }, horizon);
         });
+        tell_costs(shells, double(shells.map.bytes()));
+        return values;
     }
 
     /// What the horizon's correction alone is wrong by: lookups without a container.
@@ -223,10 +235,16 @@ class Measurement {
             return reflected_from_map(
                 scene_.pixels, exponents,
                 [&](const glm::vec3& d, float exponent) {
-                    return maps_.cube.lookup(d, maps_.cube.smoothness(double(exponent)));
+                    return maps_.cube.map.lookup(d, maps_.cube.map.smoothness(double(exponent)));
                 },
                 horizon);
         });
+        tell_cube_costs();
+    }
+
+    void tell_cube_costs() {
+        tell_costs(maps_.cube, double(maps_.cube.map.voxels().size_bytes()));
+        records_.back().size = settings_.cube_size;
     }
 
     /// [R] section 5: a texture coordinate λ r at every vertex, interpolated over triangles; eq 3.
@@ -243,10 +261,11 @@ class Measurement {
             std::vector<glm::vec3> values;
             for (const glm::vec3& t : interpolated<glm::vec3>(scene_.object, scene_.pixels, coordinates)) {
                 const float length = glm::length(t);
-                values.push_back(maps_.cube.lookup(length > 0 ? t / length : glm::vec3(0, 1, 0), length));
+                values.push_back(maps_.cube.map.lookup(length > 0 ? t / length : glm::vec3(0, 1, 0), length));
             }
             return values;
         });
+        tell_cube_costs();
     }
 
     std::filesystem::path file(const Surface& surface, const std::string& what) const {

@@ -17,11 +17,11 @@ struct TeapotSettings {
 };
 
 /// For each environment and λ (1, 0.75, 0.5, 0.25 and mixed: lower half 0.1, upper half 1) one record a way to look up:
-/// "shells" (per pixel, two lookups at the horizon), "shells-one-lookup", "shells-uncorrected", "cube", "exact-lookup"
-/// (no container: what the correction alone is wrong by) and "cube-paper" (uncorrected, and λ r interpolated between
-/// vertices as a 3D texture's coordinate); of mixed also "shells-vertex" (λ interpolated between vertices, and so in
-/// its reference). Errors are over covered pixels, after clamping to [0,1]. cpu_seconds is the picture's. Throws
-/// InputError if a file is missing, Stopped.
+/// "shells" (cubic, per pixel, two lookups at the horizon), "shells-bilinear", "shells-one-lookup",
+/// "shells-uncorrected", "cube", "exact-lookup" (no container: what the correction alone is wrong by) and "cube-paper"
+/// (uncorrected, and λ r interpolated between vertices as a 3D texture's coordinate); of mixed also "shells-vertex" (λ
+/// interpolated between vertices, and so in its reference). Errors are over covered pixels, after clamping to [0,1].
+/// cpu_seconds is the picture's. Throws InputError if a file is missing, Stopped.
 std::vector<ReflectionRecord> measure_teapot(const TeapotSettings& settings, Progress& progress = silent_progress());
 
 } // namespace kokage
