@@ -132,30 +132,53 @@ HorizonCorrection horizon_correction_from_name(std::string_view name) {
 }
 
 // The clipped lobe K against what stands for it, A: share and mean direction are K's first moments; widths follow from
-// its variances `across` and `along` the horizon. The constants were fitted by least squares of K - A over images whose
-// power falls as 1/frequency², in the plane (a Gaussian cut by a straight horizon), for horizons from one width above
-// to three below the axis, with r = across/along:
+// its variances `across` and `along` the horizon, r = across/along. For narrow Phong lobes the constants were fitted by
+// least squares of K - A over images whose power falls as 1/frequency², in the plane (a Gaussian cut by a straight
+// horizon), for horizons from one width above to three below the axis:
 //   the best mean turns less than K's by a factor near (1-r)^(1/4): the sharp edge is of high frequency;
 //   one lookup has 1 - (1-r)/2 (1.3 - r/2) of the variance along;
 //   two have r + 0.12 r (1-r), at +-sqrt(0.72 (1-r)) standard deviations.
 // Root mean square errors there, relative to the filtered image's variation: horizon through the axis: none 1.22 (and
 // the mass wrong by 2), one lookup by plain moments 0.41, one 0.39, two 0.23; horizon one width below: 0.42, 0.21,
-// 0.19, 0.13; two widths below: 0.071, 0.057, 0.046, 0.040.
+// 0.19, 0.13; two widths below: 0.071, 0.057, 0.046, 0.040. Wide lobes, bent around the sphere, and GGX, whose
+// variances tell of its foot more than of its core, were fitted to the mean error over placements in a patchy image
+// (tests/unit/reflection/maps_horizon_test.cpp has the figures).
+namespace {
+
+struct TwoLookups {
+    double spread;   ///< squared distance of the two, in (1-r) variances along
+    double turn;     ///< power of (1-r) in the mean's turn
+    double variance; ///< added to r + 0.12 r (1-r), in (1-r)
+};
+
+TwoLookups two_lookups(LobeKind kind, double width) {
+    const bool phong = kind == LobeKind::phong;
+    const TwoLookups narrow = phong ? TwoLookups{0.72, 0.25, 0} : TwoLookups{0.4, 0.4, 0.3};
+    const TwoLookups wide = {0.72, 0.1, 0.2};
+    const double t = std::clamp(phong ? 2 * width * width : (width - 0.15) / 0.25, 0.0, 1.0);
+    return {narrow.spread + t * (wide.spread - narrow.spread), narrow.turn + t * (wide.turn - narrow.turn),
+            narrow.variance + t * (wide.variance - narrow.variance)};
+}
+
+} // namespace
+
 HorizonTable::HorizonTable(LobeKind kind, HorizonCorrection correction)
     : kind_(kind), correction_(correction), cells_(std::size_t(kColumns) * kRows) {
     for (int row = 0; row < kRows; ++row) {
         const double width = row_width(kind, row);
         const Lobe lobe{kind, parameter_of_width(kind, width)};
         const double whole = lobe_variance(lobe);
+        const bool two = correction == HorizonCorrection::two_lookups;
+        const TwoLookups fit = two_lookups(kind, width);
         for (int column = 0; column < kColumns; ++column) {
             const ClippedMoments moments = clipped_moments(lobe, column_elevation(column, width));
             glm::vec4& cell = cells_[std::size_t(row) * kColumns + std::size_t(column)];
             const double along = moments.along > 0 ? moments.along : 0.25 * whole;
             const double r = moments.along > 0 ? std::clamp(moments.across / along, 0.0, 1.0) : 0.25;
-            const double turn = moments.turn * std::pow(1 - r, 0.25);
-            const bool two = correction == HorizonCorrection::two_lookups;
-            const double variance = along * (two ? r + 0.12 * r * (1 - r) : 1 - 0.5 * (1 - r) * (1.3 - 0.5 * r));
-            const double spread = two ? std::sqrt(0.72 * (1 - r) * along) : 0;
+            const double turn = moments.turn * std::pow(1 - r, two ? fit.turn : 0.25);
+            const double variance =
+                along * (two ? r + 0.12 * r * (1 - r) + fit.variance * (1 - r) : 1 - 0.5 * (1 - r) * (1.3 - 0.5 * r));
+            const double spread = two ? std::sqrt(fit.spread * (1 - r) * along) : 0;
             cell = {moments.share, turn / width, spread / width,
                     kept_ratio(lobe, whole, std::clamp(variance / whole, 1e-3, 1.0))};
         }
