@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kColumns = 65, kRows = 25;
+constexpr int kColumns = 97, kRows = 33;
 
 /// Angular scale of a lobe; what a table's row is measured in.
 double width_of(LobeKind kind, double parameter) {
@@ -33,14 +33,16 @@ double parameter_of_width(LobeKind kind, double width) {
     return kind == LobeKind::phong ? 1 / (width * width) - 1 : std::sqrt(width);
 }
 
-/// Columns: t in [-1,1] = q/(2+|q|), q = elevation of the lobe's axis above the horizon, in widths.
+/// Columns are even in q/(2+|q|), q = elevation of the lobe's axis above the horizon in widths: from -90 to 90 degrees
+/// whatever the width, closer where the lobe is cut.
 double column_elevation(double column, double width) {
-    const double t = std::clamp(2 * column / (kColumns - 1) - 1, -0.9999, 0.9999);
+    const double end = kPiDouble / 2 / width, t = (2 * column / (kColumns - 1) - 1) * end / (2 + end);
     return std::clamp(2 * t / (1 - std::abs(t)) * width, -kPiDouble / 2, kPiDouble / 2);
 }
 double column_of_elevation(double elevation, double width) {
-    const double q = elevation / width;
-    return 0.5 * (kColumns - 1) * (1 + q / (2 + std::abs(q)));
+    const double q = elevation / width, end = kPiDouble / 2 / width;
+    const double t = q / (2 + std::abs(q)) * (2 + end) / end;
+    return std::clamp(0.5 * (kColumns - 1) * (1 + t), 0.0, kColumns - 1.0);
 }
 
 /// The part of a lobe above the horizon, in a frame of its axis z and x towards the normal.
@@ -53,7 +55,7 @@ struct ClippedMoments {
 
 ClippedMoments clipped_moments(const Lobe& lobe, double elevation) {
     double mass = 0, x = 0, z = 0, xx = 0, yy = 0, zz = 0, xz = 0;
-    for (const LobeArc& arc : arcs_in_cone(lobe, kPiDouble / 2 - elevation, kPiDouble / 2)) {
+    for (const LobeArc& arc : arcs_in_cone(lobe, kPiDouble / 2 - elevation, kPiDouble / 2, 10)) {
         const double sine = std::sin(arc.angle), cosine = std::cos(arc.angle), b = arc.half_arc;
         // Integrals over the arc of 1, cos, cos² and sin² of the azimuth.
         const double one = 2 * b, cos1 = 2 * std::sin(b), cos2 = b + 0.5 * std::sin(2 * b), sin2 = one - cos2;

@@ -42,8 +42,8 @@ std::vector<double> borders_of(const Lobe& lobe, double between, double half_ang
 
 } // namespace
 
-std::vector<LobeArc> arcs_in_cone(const Lobe& lobe, double angle, double half_angle) {
-    static const std::vector<QuadratureNode> rule = gauss_legendre(32);
+std::vector<LobeArc> arcs_in_cone(const Lobe& lobe, double angle, double half_angle, int nodes) {
+    const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
     const double reach = 2 * std::asin(std::sqrt(0.25 * lobe_reach(lobe, 1e-20)));
     const std::vector<double> borders = borders_of(lobe, angle, half_angle);
     std::vector<LobeArc> arcs;
