@@ -3,9 +3,9 @@
 #include "common/directions/ring_transform.h"
 #include "reflection/maps/spectral_plan.h"
 
+#include <array>
 #include <cstdint>
 #include <span>
-#include <vector>
 
 namespace kokage {
 
@@ -21,7 +21,8 @@ struct TexelPlace {
 TexelPlace texel_place(const glm::vec3& direction, const ShellMix& mix, std::uint32_t texel);
 
 /// filtered[place.texel] = scale x sum over `grids_a_texel` grids from place.first of weight x the spline there; what
-/// is below 0 becomes 0. Returns the least value before that, unscaled.
+/// is below 0 becomes 0. Returns the least value before that, unscaled. By vectors; the slow twin is
+/// RingGrid::lookup().
 float read_texels(std::span<const TexelPlace> places, std::span<const RingGrid> grids, std::size_t grids_a_texel,
                   float scale, std::span<glm::vec3> filtered);
 
