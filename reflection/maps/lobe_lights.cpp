@@ -1,6 +1,8 @@
 #include "reflection/maps/lobe_lights.h"
 #include "common/directions/legendre.h"
+#include "common/directions/lobes.h"
 #include "common/services/parallel.h"
+#include "reflection/maps/lobe_sums.h"
 #include "reflection/maps/shell_map.h"
 
 #include <algorithm>
@@ -9,89 +11,190 @@
 namespace kokage {
 namespace {
 
-constexpr std::size_t kGroup = 64;
+constexpr std::size_t kMostInGroup = 256, kVector = 16;
 
-float angle_between(const glm::vec3& a, const glm::vec3& b) {
-    return 2 * std::asin(std::min(1.f, 0.5f * glm::distance(a, b)));
+float channel_maximum(const glm::vec3& v) {
+    return std::max({v.r, v.g, v.b});
+}
+
+/// A Gauss rule over a cone: rings of equal points at the nodes in 1 - cos, which is uniform in solid angle.
+std::vector<PointOfLight> points_of_disc(const DistantLight& light, double least_spread) {
+    const double half_angle = double(light.half_angle), half_sine = std::sin(0.5 * half_angle),
+                 height = 2 * half_sine * half_sine; // 1 - cos
+    const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction));
+    if (!(half_angle > 0))
+        return {{glm::vec3(axis), light.irradiance}};
+    // irradiance = radiance x pi sin^2 (beyond a right angle, pi); what lobes take is radiance x solid angle.
+    const double ratio = half_angle <= kPiDouble / 2 ? 2 / (2 - height) : 2 * height;
+    const int rings = std::clamp(2 + int(std::ceil(1.5 * half_angle / std::sqrt(least_spread))), 2, 64),
+              around = 4 * rings;
+    const glm::dvec3 u =
+        glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0)));
+    const glm::dvec3 v = glm::cross(axis, u);
+    std::vector<PointOfLight> points;
+    const std::vector<QuadratureNode> rule = gauss_legendre(rings);
+    for (std::size_t ring = 0; ring < rule.size(); ++ring) {
+        const double w = 0.5 * (1 + rule[ring].x) * height, sine = std::sqrt(w * (2 - w));
+        for (int i = 0; i < around; ++i) {
+            const double turn = 2 * kPiDouble * (i + 0.5 * double(ring % 2)) / around;
+            points.push_back({glm::vec3((1 - w) * axis + sine * (std::cos(turn) * u + std::sin(turn) * v)),
+                              light.irradiance * float(0.5 * rule[ring].weight / around * ratio)});
+        }
+    }
+    return points;
 }
 
 } // namespace
 
-void append_points(const DistantLight& light, double least_spread, std::vector<PointOfLight>& points) {
-    if (!light.texels.empty()) {
-        for (const DistantLight::Texel& texel : light.texels)
-            points.push_back({texel.direction, texel.irradiance});
-        return;
+ClusterOfLight cluster_of(const DistantLight& light, double least_spread) {
+    ClusterOfLight cluster;
+    if (light.texels.empty())
+        cluster.points = points_of_disc(light, least_spread);
+    for (const DistantLight::Texel& texel : light.texels)
+        cluster.points.push_back({texel.direction, texel.irradiance});
+    cluster.axis = glm::normalize(light.direction);
+    glm::vec3 sum(0);
+    for (const PointOfLight& point : cluster.points) {
+        cluster.chord = std::max(cluster.chord, glm::distance(point.direction, cluster.axis));
+        sum += point.irradiance;
     }
-    if (!(light.half_angle > 0)) {
-        points.push_back({glm::normalize(light.direction), light.irradiance});
-        return;
-    }
-    const double half_angle = double(light.half_angle), half_sine = std::sin(0.5 * half_angle),
-                 height = 2 * half_sine * half_sine; // 1 - cos
-    // irradiance = radiance x pi sin^2; what lobes take is radiance x solid angle.
-    const double ratio = half_angle <= kPiDouble / 2 ? 2 / (2 - height) : 2 * height;
-    const int rings = std::clamp(2 + int(std::ceil(1.5 * half_angle / std::sqrt(least_spread))), 2, 64);
-    const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction));
-    const glm::dvec3 u =
-        glm::normalize(glm::cross(axis, std::abs(axis.y) < 0.9 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0)));
-    const glm::dvec3 v = glm::cross(axis, u);
-    int ring = 0;
-    for (const QuadratureNode& node : gauss_legendre(rings)) {
-        const double w = 0.5 * (1 + node.x) * height, sine = std::sqrt(w * (2 - w));
-        const int around = 4 * rings;
-        for (int i = 0; i < around; ++i) {
-            const double turn = 2 * kPiDouble * (i + 0.5 * (ring % 2)) / around;
-            points.push_back({glm::vec3((1 - w) * axis + sine * (std::cos(turn) * u + std::sin(turn) * v)),
-                              light.irradiance * float(0.5 * node.weight / around * ratio)});
-        }
-        ++ring;
-    }
+    cluster.strength = channel_maximum(sum);
+    return cluster;
 }
 
-LobeLights::LobeLights(const TexelLayout& layout) : layout_(layout) {
-    for (std::size_t begin = 0; begin < layout.size(); begin += kGroup) {
-        const std::size_t end = std::min(begin + kGroup, layout.size());
-        glm::vec3 sum(0);
+namespace {
+
+/// Sorting: lobes of about the same width in about the same direction share a cell, about two widths across.
+struct Cells {
+    struct Band {
+        int across;          ///< cells along a face of a cube
+        std::uint32_t first; ///< cell
+    };
+    double widest = -1e30, octave = std::log(2.0);
+    std::vector<Band> bands;
+    std::uint32_t count = 0;
+
+    Cells(double least_width, double most_width) : widest(most_width) {
+        for (double width = most_width; width > least_width - octave; width -= octave) {
+            const int across = std::clamp(int(std::lround(0.8 * std::exp(-0.5 * width))), 1, 128);
+            bands.push_back({across, count});
+            count += 6 * std::uint32_t(across * across);
+        }
+    }
+    std::uint32_t cell(const glm::vec3& direction, double width) const {
+        const auto index = std::size_t(std::max(0.0, (widest - width) / octave));
+        const Band& band = bands[std::min(index, bands.size() - 1)];
+        const glm::vec3 size = glm::abs(direction);
+        const glm::length_t axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+        const float u = direction[(axis + 1) % 3] / size[axis], v = direction[(axis + 2) % 3] / size[axis];
+        auto place = [&](float t) { return std::clamp(int(0.5f * (t + 1) * float(band.across)), 0, band.across - 1); };
+        const int face = 2 * int(axis) + (direction[axis] < 0);
+        return band.first + std::uint32_t((face * band.across + place(v)) * band.across + place(u));
+    }
+};
+
+} // namespace
+
+LobeLights::LobeLights(const TexelLayout& layout) : kind_(layout.kind) {
+    const std::size_t count = layout.size();
+    if (count == 0)
+        return;
+    std::vector<float> widths(count);
+    parallel_blocks(count, 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
-            sum += layout.directions[i];
-        const float length = glm::length(sum);
-        Group group{std::uint32_t(begin), std::uint32_t(end), length > 0 ? sum / length : layout.directions[begin], 0,
-                    layout.parameters[begin]};
+            widths[i] = float(std::log(std::max(lobe_spread({kind_, double(layout.parameters[i])}), 1e-12)));
+    });
+    const auto [least, most] = std::minmax_element(widths.begin(), widths.end());
+    const Cells cells{double(*least), double(*most)};
+    std::vector<std::uint32_t> cell_of(count), begin_of(std::size_t(cells.count) + 1);
+    for (std::size_t i = 0; i < count; ++i)
+        ++begin_of[(cell_of[i] = cells.cell(layout.directions[i], double(widths[i]))) + 1];
+    for (std::size_t cell = 0; cell < cells.count; ++cell)
+        begin_of[cell + 1] += begin_of[cell];
+    std::vector<std::uint32_t> next(begin_of.begin(), begin_of.end() - 1);
+    texels_.resize(count);
+    for (std::size_t i = 0; i < count; ++i)
+        texels_[next[cell_of[i]]++] = std::uint32_t(i);
+
+    for (std::vector<float>* values : {&x_, &y_, &z_, &shape_, &peak_})
+        values->resize(count + kVector);
+    parallel_blocks(count, 8192, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
-            group.half_angle = std::max(group.half_angle, angle_between(group.axis, layout.directions[i]));
-            if (lobe_spread({layout.kind, double(layout.parameters[i])}) >
-                lobe_spread({layout.kind, double(group.widest)}))
-                group.widest = layout.parameters[i];
+            const glm::vec3& direction = layout.directions[texels_[i]];
+            const float parameter = layout.parameters[texels_[i]];
+            x_[i] = direction.x;
+            y_[i] = direction.y;
+            z_[i] = direction.z;
+            shape_[i] = kind_ == LobeKind::phong ? parameter : float(ggx_falloff(double(parameter)));
+            peak_[i] = float(lobe_value({kind_, double(parameter)}, 0));
         }
-        groups_.push_back(group);
-    }
+    });
+    for (std::size_t cell = 0; cell < cells.count; ++cell)
+        for (std::uint32_t begin = begin_of[cell]; begin < begin_of[cell + 1]; begin += kMostInGroup)
+            make_groups(layout, begin, std::min(begin_of[cell + 1], begin + std::uint32_t(kMostInGroup)));
 }
 
-std::uint64_t LobeLights::add(std::span<const PointOfLight> points, float negligible, std::span<const float> factors,
-                              std::span<glm::vec3> filtered) const {
-    std::vector<std::uint64_t> evaluated(groups_.size());
-    parallel_blocks(groups_.size(), 16, [&](std::size_t first, std::size_t last) {
+void LobeLights::make_groups(const TexelLayout& layout, std::uint32_t begin, std::uint32_t end) {
+    glm::vec3 sum(0);
+    for (std::uint32_t i = begin; i < end; ++i)
+        sum += glm::vec3(x_[i], y_[i], z_[i]);
+    const float length = glm::length(sum);
+    Group group{begin,
+                end,
+                length > 0 ? sum / length : glm::vec3(x_[begin], y_[begin], z_[begin]),
+                0,
+                layout.parameters[texels_[begin]],
+                0};
+    double widest = 0;
+    for (std::uint32_t i = begin; i < end; ++i) {
+        group.chord = std::max(group.chord, glm::distance(group.axis, glm::vec3(x_[i], y_[i], z_[i])));
+        group.peak = std::max(group.peak, peak_[i]);
+        const float parameter = layout.parameters[texels_[i]];
+        if (const double spread = lobe_spread({kind_, double(parameter)}); spread > widest) {
+            widest = spread;
+            group.widest = parameter;
+        }
+    }
+    groups_.push_back(group);
+}
+
+std::size_t LobeLights::bytes() const {
+    return groups_.size() * sizeof(Group) + texels_.size() * (sizeof(std::uint32_t) + 5 * sizeof(float));
+}
+
+std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float negligible,
+                              std::span<const float> factors, std::span<glm::vec3> filtered) const {
+    constexpr std::size_t kBlock = 64;
+    std::vector<std::uint64_t> evaluated((groups_.size() + kBlock - 1) / kBlock);
+    parallel_blocks(groups_.size(), kBlock, [&](std::size_t first, std::size_t last) {
+        std::vector<PointOfLight> near;
+        alignas(64) float sums[3 * (kMostInGroup + kVector)];
         for (std::size_t g = first; g < last; ++g) {
             const Group& group = groups_[g];
-            for (const PointOfLight& point : points) {
-                const double brightest = double(std::max({point.irradiance.r, point.irradiance.g, point.irradiance.b}));
-                const Lobe widest{layout_.kind, double(group.widest)};
-                // A narrower lobe of the group may be higher, but where it reaches as far it is lower.
-                const double share = double(negligible) / (brightest * lobe_value(widest, 0));
-                if (!(share < 1e3))
+            near.clear();
+            for (const ClusterOfLight& cluster : clusters) {
+                const double share = double(negligible) / (double(cluster.strength) * double(group.peak));
+                if (!(share < 1))
                     continue;
-                const double reach = lobe_reach(widest, std::min(share * 1e-3, 1.0));
-                const double angle = 2 * std::asin(std::min(1.0, 0.5 * std::sqrt(reach)));
-                if (double(angle_between(group.axis, point.direction)) > double(group.half_angle) + angle)
+                // Distances between unit directions add up to more than the distance.
+                const float reach = float(std::sqrt(lobe_reach({kind_, double(group.widest)}, share))) + group.chord;
+                if (glm::distance(group.axis, cluster.axis) > reach + cluster.chord)
                     continue;
-                evaluated[g] += group.end - group.begin;
-                for (std::uint32_t i = group.begin; i < group.end; ++i) {
-                    const glm::dvec3 between = glm::dvec3(layout_.directions[i]) - glm::dvec3(point.direction);
-                    const Lobe lobe{layout_.kind, double(layout_.parameters[i])};
-                    const float factor = factors.empty() ? 1.f : factors[i];
-                    filtered[i] += factor * float(lobe_value(lobe, glm::dot(between, between))) * point.irradiance;
-                }
+                for (const PointOfLight& point : cluster.points)
+                    if (glm::distance(group.axis, point.direction) <= reach)
+                        near.push_back(point);
+            }
+            if (near.empty())
+                continue;
+            const std::size_t count = group.end - group.begin, at = group.begin, stride = kMostInGroup + kVector;
+            evaluated[first / kBlock] += count * near.size();
+            sum_lobes(kind_,
+                      {x_.data() + at, y_.data() + at, z_.data() + at, shape_.data() + at, peak_.data() + at, count},
+                      near, sums, stride);
+            for (std::size_t i = 0; i < count; ++i) {
+                const std::uint32_t texel = texels_[at + i];
+                const float factor = factors.empty() ? 1.f : factors[texel];
+                filtered[texel] += factor * glm::vec3(sums[i], sums[stride + i], sums[2 * stride + i]);
             }
         }
     });

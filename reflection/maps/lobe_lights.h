@@ -15,28 +15,44 @@ struct PointOfLight {
     glm::vec3 irradiance;
 };
 
-/// Points that stand for a light: its texels at their centres; a disc as a Gauss rule over it that is exact for lobes
-/// of the variance `least_spread` and wider.
-void append_points(const DistantLight& light, double least_spread, std::vector<PointOfLight>& points);
+/// Points that lie together.
+struct ClusterOfLight {
+    glm::vec3 axis{0, 1, 0};
+    float chord = 0;    ///< largest distance of a point's direction from the axis
+    float strength = 0; ///< sum of irradiance, of the channel that has most
+    std::vector<PointOfLight> points;
+};
 
-/// Which texels lie together, prepared once for a layout.
+/// What stands for a light: its texels' centres; of a disc the points of a Gauss rule over it that is exact enough for
+/// lobes of the variance `least_spread` and wider.
+ClusterOfLight cluster_of(const DistantLight& light, double least_spread);
+
+/// Texels sorted by lobe and direction, so that a group of them can be seen to be out of a light's reach together.
+/// Prepared once for a layout.
 class LobeLights {
   public:
     explicit LobeLights(const TexelLayout& layout);
-    /// filtered += factors[texel] x sum over points of irradiance x lobe, where that exceeds `negligible`; no factors =
-    /// 1. The same bits with any number of threads. Returns how many lobes were evaluated.
-    std::uint64_t add(std::span<const PointOfLight> points, float negligible, std::span<const float> factors,
+    /// filtered += factors[texel] x sum over points of irradiance x lobe, but for clusters that add less than
+    /// `negligible`; no factors = 1. The same bits with any number of threads. Returns how many lobes were evaluated.
+    /// Relative error 1e-5.
+    std::uint64_t add(std::span<const ClusterOfLight> clusters, float negligible, std::span<const float> factors,
                       std::span<glm::vec3> filtered) const;
+    std::size_t bytes() const;
 
   private:
     struct Group {
         std::uint32_t begin, end;
         glm::vec3 axis;
-        float half_angle;
+        float chord;  ///< largest distance of a texel's direction from the axis
         float widest; ///< parameter of the widest lobe
+        float peak;   ///< largest value of any of the lobes
     };
-    const TexelLayout& layout_;
+    void make_groups(const TexelLayout& layout, std::uint32_t begin, std::uint32_t end);
+
+    LobeKind kind_;
     std::vector<Group> groups_;
+    std::vector<std::uint32_t> texels_;           ///< in the layout, group by group
+    std::vector<float> x_, y_, z_, shape_, peak_; ///< of these; padded to whole vectors. shape: Λ, or ggx_falloff()
 };
 
 } // namespace kokage

@@ -67,7 +67,7 @@ class SpectralBaker final : public Baker {
     void normalize();
     void filter_smooth(const Image& image, float most, std::span<glm::vec3> filtered, WorkReport& report,
                        Progress& progress);
-    void add_lights(const Image& image, std::span<const PointOfLight> in_image, std::span<const DistantLight> others,
+    void add_lights(const Image& image, std::span<const ClusterOfLight> in_image, std::span<const DistantLight> others,
                     std::span<glm::vec3> filtered, WorkReport& report);
     void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report);
 
@@ -104,7 +104,7 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
     }
     place_texels();
     normalize();
-    bytes += places_.size() * sizeof(TexelPlace) + direct_.size() * sizeof(std::uint32_t);
+    bytes += lights_.bytes() + places_.size() * sizeof(TexelPlace) + direct_.size() * sizeof(std::uint32_t);
     report.stages.push_back({"preparing harmonics", watch.cpu(), watch.wall()});
     report.counts.push_back({"bands", std::uint64_t(plan_.shells().empty() ? 0 : plan_.bands())});
     report.counts.push_back({"spectral shells", plan_.shells().size()});
@@ -188,21 +188,21 @@ void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filte
     report.stages.push_back({"summing pixel by pixel", watch.cpu(), watch.wall()});
 }
 
-void SpectralBaker::add_lights(const Image& image, std::span<const PointOfLight> in_image,
+void SpectralBaker::add_lights(const Image& image, std::span<const ClusterOfLight> in_image,
                                std::span<const DistantLight> others, std::span<glm::vec3> filtered,
                                WorkReport& report) {
     if (in_image.empty() && others.empty())
         return;
     const Stopwatch watch;
-    std::vector<PointOfLight> points;
+    std::vector<ClusterOfLight> clusters;
     for (const DistantLight& light : others)
-        append_points(light, least_spread_, points);
+        clusters.push_back(cluster_of(light, least_spread_));
     const double mean = luminance_integral(image) / (4 * kPiDouble);
     const float negligible = float(1e-2 * settings_.tolerance * mean);
     std::uint64_t lobes = 0;
     if (!places_.empty())
         lobes += lights_.add(in_image, negligible, factors_, filtered);
-    lobes += lights_.add(points, negligible, {}, filtered);
+    lobes += lights_.add(clusters, negligible, {}, filtered);
     report.counts.push_back({"lobes of lights", lobes});
     report.stages.push_back({"lobes of lights", watch.cpu(), watch.wall()});
 }
@@ -221,7 +221,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
     progress.begin("filtering", 1);
     const Range range = range_of(image);
     report.counts.push_back({"texels", layout_.size()});
-    std::vector<PointOfLight> points;
+    std::vector<ClusterOfLight> lights;
     if (range.least == range.most) {
         std::fill(filtered.begin(), filtered.end(), range.most);
         report.skips.push_back(
@@ -233,7 +233,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
         LightSplit split = split_lights(image, splitting);
         std::size_t pixels = 0;
         for (const DistantLight& light : split.lights) {
-            append_points(light, least_spread_, points);
+            lights.push_back(cluster_of(light, least_spread_));
             pixels += light.texels.size();
         }
         report.counts.push_back({"lights split off", split.lights.size()});
@@ -242,7 +242,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
         filter_smooth(split.remainder, largest(range_of(split.remainder).most), filtered, report, progress);
         filter_direct(image, filtered, report);
     }
-    add_lights(image, points, surroundings.distant_lights, filtered, report);
+    add_lights(image, lights, surroundings.distant_lights, filtered, report);
     for (glm::vec3& value : filtered)
         value = glm::min(value, glm::vec3(std::numeric_limits<float>::max()));
     progress.advance(1);
