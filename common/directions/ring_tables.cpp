@@ -3,6 +3,7 @@
 #include "common/services/parallel.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -11,31 +12,100 @@ namespace {
 
 constexpr int kPad = RingCoefficients::kPad;
 
-/// Replaces values on the rings (j + 1/2) pi / n of one order m, for all j < n, by coefficients of the cubic B-spline
-/// that takes these values. Over a pole the meridian goes on at azimuth + pi, where order m is (-1)^m as large, so
-/// that a meridian is a circle. Unser, Aldroubi and Eden 1993, "B-spline signal processing: part II", eqs 2.5.
-void spline_coefficients(std::vector<double>& values, bool odd, std::vector<double>& circle) {
-    constexpr int kRun = 40; // z^40 = 1e-23
-    const double z = std::sqrt(3.0) - 2, gain = -6 * z;
-    const int n = int(values.size());
-    auto on_circle = [&](int j) { // 2n rings around
-        j = ((j % (2 * n)) + 2 * n) % (2 * n);
-        return j < n ? values[std::size_t(j)] : (odd ? -1.0 : 1.0) * values[std::size_t(2 * n - 1 - j)];
-    };
-    circle.resize(std::size_t(n + 2 * kRun));
-    double sum = 0;
-    for (int j = -2 * kRun; j < n + kRun; ++j) {
-        sum = on_circle(j) + z * sum;
-        if (j >= -kRun)
-            circle[std::size_t(j + kRun)] = sum;
+/// P_lm of one order m on all northern rings: row by row, [pair][l - m].
+class OrderTable {
+  public:
+    OrderTable(int bands, int rings, std::span<const double> polar, std::span<const double> weights)
+        : bands_(bands), rings_(rings), polar_(polar), weights_(weights) {}
+
+    /// The recurrence of legendre.h's polar_factors(), for several rings at once.
+    void fill(int m) {
+        count_ = std::size_t(bands_ - m);
+        odd_ = m % 2 != 0;
+        values_.resize(polar_.size() * count_);
+        std::vector<double> first(1), up(count_), back(count_);
+        polar_factors(m + 1, m, 0, first);
+        auto factor = [m](int l) { return std::sqrt((4.0 * l * l - 1) / (double(l) * l - double(m) * m)); };
+        for (std::size_t i = 1; i < count_; ++i) {
+            up[i] = factor(m + int(i));
+            back[i] = i > 1 ? up[i] / up[i - 1] : 0;
+        }
+        constexpr std::size_t kAtOnce = 8;
+        for (std::size_t begin = 0; begin < polar_.size(); begin += kAtOnce) {
+            std::array<double, kAtOnce> height, now, before{};
+            for (std::size_t k = 0; k < kAtOnce; ++k) {
+                const std::size_t pair = std::min(begin + k, polar_.size() - 1);
+                height[k] = std::cos(polar_[pair]);
+                now[k] = first[0] * std::pow(std::sin(polar_[pair]), m) * (weights_.empty() ? 1 : weights_[pair]);
+            }
+            const std::size_t here = std::min(kAtOnce, polar_.size() - begin);
+            double* rows = values_.data() + begin * count_;
+            for (std::size_t i = 0; i < count_; ++i) {
+                if (i > 0)
+                    for (std::size_t k = 0; k < kAtOnce; ++k) {
+                        const double next = up[i] * height[k] * now[k] - back[i] * before[k];
+                        before[k] = now[k];
+                        now[k] = next;
+                    }
+                for (std::size_t k = 0; k < here; ++k)
+                    rows[k * count_ + i] = now[k];
+            }
+        }
     }
-    sum = 0;
-    for (int j = n + kRun - 1; j >= 0; --j) {
-        sum = circle[std::size_t(j + kRun)] + z * sum;
-        if (j < n)
-            values[std::size_t(j)] = gain * sum;
+
+    /// Replaces the values on the rings (j + 1/2) pi / n by the coefficients of the spline (kRingSpline) that takes
+    /// these values. Over a pole the meridian goes on at azimuth + pi, where order m is (-1)^m as large, so that a
+    /// meridian is a circle. The inverse of (4, 13, 4) / 21 is a run down and a run up with its pole z: Unser, Aldroubi
+    /// and Eden 1993, "B-spline signal processing: part II", eq 2.5.
+    void make_spline() {
+        constexpr int kRun = 28; // z^28 = 1e-13
+        const double z = (std::sqrt(105.0) - 13) / 8, gain = -z * 21 / 4;
+        const int pairs = int(polar_.size()), end = pairs + kRun;
+        runs_.resize(std::size_t(end) * count_);
+        std::vector<double> sum(count_);
+        for (int j = -kRun; j < end; ++j) {
+            double even_sign = 0, odd_sign = 0;
+            const double* row = ring(j, even_sign, odd_sign);
+            for (std::size_t i = 0; i + 1 < count_; i += 2) {
+                sum[i] = even_sign * row[i] + z * sum[i];
+                sum[i + 1] = odd_sign * row[i + 1] + z * sum[i + 1];
+            }
+            if (count_ % 2 != 0)
+                sum[count_ - 1] = even_sign * row[count_ - 1] + z * sum[count_ - 1];
+            if (j >= 0)
+                std::copy(sum.begin(), sum.end(), runs_.begin() + std::ptrdiff_t(std::size_t(j) * count_));
+        }
+        std::fill(sum.begin(), sum.end(), 0.0);
+        for (int j = end - 1; j >= 0; --j) {
+            const double* run = runs_.data() + std::size_t(j) * count_;
+            for (std::size_t i = 0; i < count_; ++i)
+                sum[i] = gain * run[i] + z * sum[i];
+            if (j < pairs)
+                std::copy(sum.begin(), sum.end(), values_.begin() + std::ptrdiff_t(std::size_t(j) * count_));
+        }
     }
-}
+
+    const double* row(std::size_t pair) const { return values_.data() + pair * count_; }
+    std::size_t count() const { return count_; }
+
+  private:
+    /// Ring j of the circle: the northern row that it mirrors, and the signs of even and odd l - m there.
+    const double* ring(int j, double& even_sign, double& odd_sign) const {
+        const int circle = ((j % (2 * rings_)) + 2 * rings_) % (2 * rings_);
+        const bool beyond_pole = circle >= rings_;
+        const int on_meridian = beyond_pole ? 2 * rings_ - 1 - circle : circle;
+        const bool south = on_meridian >= int(polar_.size());
+        even_sign = beyond_pole && odd_ ? -1 : 1;
+        odd_sign = south ? -even_sign : even_sign;
+        return row(std::size_t(south ? rings_ - 1 - on_meridian : on_meridian));
+    }
+
+    int bands_, rings_;
+    std::span<const double> polar_, weights_;
+    bool odd_ = false;
+    std::size_t count_ = 0;
+    std::vector<double> values_, runs_;
+};
 
 } // namespace
 
@@ -53,7 +123,7 @@ RingTables::RingTables(int bands, int rings, std::span<const double> polar, std:
             size += order == Order::along_bands ? std::size_t(pairs()) * std::size_t(shape.padded(m, parity))
                                                 : std::size_t(shape.count(m, parity)) * std::size_t(padded_pairs());
         }
-        // P_lm is below 1e-12 of its largest value where (l sin / m) is so far below 1; kept simple and safe.
+        // P_lm is below 1e-12 of its largest value where l sin is so far below m.
         int first = 0;
         const double reach = (m - 6.5 * std::cbrt(double(m)) - 12) / bands;
         while (first < pairs() && std::sin(polar[std::size_t(first)]) < reach)
@@ -61,36 +131,29 @@ RingTables::RingTables(int bands, int rings, std::span<const double> polar, std:
         first_pair_.push_back(first / kPad * kPad);
     }
     values_.resize(size);
-    std::fill(values_.begin(), values_.end(), 0.f);
-
     parallel_blocks(std::size_t(bands), 4, [&](std::size_t begin, std::size_t end) {
-        std::vector<double> functions, column(static_cast<std::size_t>(bands)), ring_values, circle;
+        OrderTable functions(bands, rings, polar, weights);
         for (int m = int(begin); m < int(end); ++m) {
-            const std::size_t count = std::size_t(bands - m);
-            functions.assign(count * std::size_t(pairs()), 0); // [l - m][pair]
-            for (std::size_t pair = 0; pair < std::size_t(pairs()); ++pair) {
-                polar_factors(bands, m, std::cos(polar[pair]), column);
-                const double factor = std::pow(std::sin(polar[pair]), m) * (weights.empty() ? 1 : weights[pair]);
-                for (std::size_t i = 0; i < count; ++i)
-                    functions[i * std::size_t(pairs()) + pair] = factor * column[i];
-            }
-            for (std::size_t i = 0; i < count; ++i) {
-                double* north = functions.data() + i * std::size_t(pairs());
-                if (spline) {
-                    ring_values.resize(std::size_t(rings));
-                    for (int j = 0; j < pairs(); ++j) {
-                        ring_values[std::size_t(rings - 1 - j)] = (i % 2 ? -1.0 : 1.0) * north[j];
-                        ring_values[std::size_t(j)] = north[j];
-                    }
-                    spline_coefficients(ring_values, m % 2 != 0, circle);
-                    std::copy_n(ring_values.begin(), pairs(), north);
-                }
-                const int parity = int(i % 2);
+            functions.fill(m);
+            if (spline)
+                functions.make_spline();
+            for (int parity = 0; parity < 2; ++parity) {
                 float* values = values_.data() + first_[std::size_t(2 * m + parity)];
-                for (std::size_t pair = 0; pair < std::size_t(pairs()); ++pair)
-                    values[order == Order::along_bands ? pair * std::size_t(shape.padded(m, parity)) + i / 2
-                                                       : i / 2 * std::size_t(padded_pairs()) + pair] =
-                        float(north[pair]);
+                const auto count = std::size_t(shape.count(m, parity)), padded = std::size_t(shape.padded(m, parity)),
+                           across = std::size_t(padded_pairs());
+                for (std::size_t pair = 0; pair < std::size_t(pairs()); ++pair) {
+                    const double* row = functions.row(pair) + parity;
+                    if (order == Order::along_bands) {
+                        for (std::size_t i = 0; i < padded; ++i)
+                            values[pair * padded + i] = i < count ? float(row[2 * i]) : 0.f;
+                    } else {
+                        for (std::size_t i = 0; i < count; ++i)
+                            values[i * across + pair] = float(row[2 * i]);
+                    }
+                }
+                if (order == Order::along_rings)
+                    for (std::size_t i = 0; i < count; ++i)
+                        std::fill(values + i * across + std::size_t(pairs()), values + (i + 1) * across, 0.f);
             }
         }
     });

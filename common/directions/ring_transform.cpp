@@ -123,10 +123,12 @@ RingGrid::RingGrid(int rings_, int columns_)
 
 namespace {
 
-/// Values of the four cubic B-splines over a cell, at 0 <= t < 1 from the second's centre.
 std::array<double, 4> spline_weights(double t) {
-    const double s = 1 - t;
-    return {s * s * s / 6, (4 - 6 * t * t + 3 * t * t * t) / 6, (4 - 6 * s * s + 3 * s * s * s) / 6, t * t * t / 6};
+    std::array<double, 4> weights;
+    for (std::size_t i = 0; i < 4; ++i)
+        weights[i] = ((double(kRingSpline[0][i]) * t + double(kRingSpline[1][i])) * t + double(kRingSpline[2][i])) * t +
+                     double(kRingSpline[3][i]);
+    return weights;
 }
 
 } // namespace
@@ -151,8 +153,7 @@ RingSynthesis::RingSynthesis(int bands, int rings, int columns)
     if (columns % 2 != 0 || columns < 2 * bands - 1)
         throw std::invalid_argument("RingSynthesis: columns must be even and at least twice the bands");
     for (int m = 0; m < bands; ++m)
-        // 1 over the spectrum of the B-spline's samples 1/6, 4/6, 1/6.
-        order_factors_.push_back(float((m == 0 ? 1 : 0.5) * 6 / (4 + 2 * std::cos(2 * kPiDouble * m / columns))));
+        order_factors_.push_back(float((m == 0 ? 1 : 0.5) * 21 / (13 + 8 * std::cos(2 * kPiDouble * m / columns))));
 }
 
 namespace {

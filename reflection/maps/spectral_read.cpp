@@ -40,12 +40,6 @@ using Tag4 = hn::FixedTag<float, 4>;
 using Vec4 = hn::Vec<Tag4>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag()), kParts = 16 / kLanes;
 
-/// Coefficients of the four cubic B-splines over a cell, for t^3, t^2, t, 1.
-constexpr float kSpline[4][4] = {{-1 / 6.f, 3 / 6.f, -3 / 6.f, 1 / 6.f},
-                                 {3 / 6.f, -6 / 6.f, 3 / 6.f, 0},
-                                 {-3 / 6.f, 0, 3 / 6.f, 0},
-                                 {1 / 6.f, 4 / 6.f, 1 / 6.f, 0}};
-
 /// Weights of the four cells in a row, each for all of the cell's channels.
 struct Across {
     Vec factors[4][kParts];
@@ -53,7 +47,7 @@ struct Across {
         HWY_ALIGN float lanes[16];
         for (std::size_t power = 0; power < 4; ++power) {
             for (std::size_t lane = 0; lane < 16; ++lane)
-                lanes[lane] = kSpline[power][lane / 4];
+                lanes[lane] = kRingSpline[power][lane / 4];
             for (std::size_t part = 0; part < kParts; ++part)
                 factors[power][part] = hn::Load(Tag(), lanes + part * kLanes);
         }
@@ -69,7 +63,7 @@ struct Down {
     Vec factors[4];
     HWY_INLINE Down() {
         for (std::size_t power = 0; power < 4; ++power)
-            factors[power] = hn::LoadDup128(Tag(), kSpline[power]);
+            factors[power] = hn::LoadDup128(Tag(), kRingSpline[power]);
     }
     HWY_INLINE Vec weights(Vec s) const {
         return hn::MulAdd(hn::MulAdd(hn::MulAdd(factors[0], s, factors[1]), s, factors[2]), s, factors[3]);

@@ -143,7 +143,7 @@ TEST(SpectralBaker, SmallerToleranceSmallerError) {
     double before = 1;
     for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
         const double error = errors(bake(layout, environment, {tolerance, {}}).filtered, right).largest;
-        EXPECT_LT(error, 3 * tolerance);
+        EXPECT_LT(error, 2 * tolerance);
         EXPECT_LT(error, before);
         before = error;
     }
