@@ -1,9 +1,10 @@
-// `kokage compare`: how far two pictures, or two shadings of a tree, are apart.
+// `kokage compare`: how far two pictures, two reflection maps or two shadings of a tree are apart.
 #include "common/scene/image_file.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
+#include "viewer/compare_maps.h"
 #include "viewer/compare_trees.h"
 #include "viewer/output_check.h"
 #include "viewer/stop_signal.h"
@@ -133,6 +134,57 @@ void compare_trees(const CompareOptions& options, const CommandContext& context)
     }
 }
 
+Json difference_json(const MapDifference& d) {
+    return {{"mean_error_255", d.mean_255},
+            {"max_error_255", d.max_255},
+            {"mean_relative_error", d.mean_relative},
+            {"max_relative_error", d.max_relative},
+            {"worst_direction", {d.worst_direction.x, d.worst_direction.y, d.worst_direction.z}}};
+}
+
+void print_difference(const char* what, const MapDifference& d) {
+    std::printf("%-20s of 256: mean %.4g, largest %.4g; relative: mean %.4g %%, largest %.4g %%\n", what, d.mean_255,
+                d.max_255, 100 * d.mean_relative, 100 * d.max_relative);
+}
+
+void compare_reflection_maps(const CompareOptions& options, const CommandContext& context) {
+    const FilteredMap map = load_reflection_map(options.picture), reference = load_reflection_map(options.reference);
+    const MapComparison c = compare_maps(map, reference);
+    std::printf("%-20s %s\n%-20s %s\n", "A", map.description.c_str(), "B", reference.description.c_str());
+    for (const MapComparison::OfLobe& lobe : c.lobes) {
+        char name[40];
+        std::snprintf(name, sizeof name, "%s %.4g", map.kind == LobeKind::ggx ? "roughness" : "exponent",
+                      lobe.parameter);
+        print_difference(name, lobe.difference);
+    }
+    print_difference("all", c.all);
+    const WritingFiles writing;
+    const char* shows = "largest difference of the channels in every direction, rough lobes at the top";
+    std::string legend;
+    double map_scale = 0;
+    if (!options.error_map.empty()) {
+        const ImageComparison pictures = compare_images(pictures_of_map(map, c), pictures_of_map(reference, c));
+        map_scale = double(pictures.map_scale);
+        legend = error_legend_text(map_scale, 1, "");
+        save_image(options.error_map, pictures.map, {.png_encoding = PngEncoding::as_is});
+        print_map(context, options.error_map, shows, legend);
+    }
+    if (!options.report.empty()) {
+        Json lobes = Json::array();
+        for (const MapComparison::OfLobe& lobe : c.lobes) {
+            lobes.push_back(difference_json(lobe.difference));
+            lobes.back()["parameter"] = lobe.parameter;
+        }
+        Json report = {{"map", options.picture.string()},         {"map_is", map.description},
+                       {"reference", options.reference.string()}, {"reference_is", reference.description},
+                       {"lobe", lobe_kind_name(map.kind)},        {"directions", c.directions},
+                       {"error", difference_json(c.all)},         {"lobes", lobes}};
+        if (!options.error_map.empty())
+            report["error_map"] = map_json(options.error_map, shows, map_scale, legend);
+        write_json(options.report, report);
+    }
+}
+
 bool is_tree(const std::filesystem::path& path) {
     const std::string ending = lower_ending(path);
     return ending == ".glb" || ending == ".gltf";
@@ -143,10 +195,11 @@ bool is_tree(const std::filesystem::path& path) {
 Command compare_command(CLI::App& program) {
     const auto options = std::make_shared<CompareOptions>();
     CLI::App* app = program.add_subcommand(
-        "compare", "Error figures and an error map of two pictures, or of two shadings of a tree");
+        "compare", "Error figures and an error map of two pictures, reflection maps or shadings of a tree");
     app->footer("\nExample: kokage compare fast.png truth.png -o errors.png");
     app->add_option("A", options->picture,
-                    "What is judged: a picture (.png, .exr, .hdr, .jpg, ...) or a tree shaded by kokage (.glb)")
+                    "What is judged: a picture (.png, .exr, .hdr, .jpg, ...), a reflection map (.exr of kokage bake, "
+                    ".ktx2, .dds) or a tree shaded by kokage (.glb)")
         ->required()
         ->type_name("FILE");
     app->add_option("B", options->reference, "The reference, of the same kind")->required()->type_name("FILE");
@@ -160,11 +213,15 @@ Command compare_command(CLI::App& program) {
                     check_output(options->report, "the report", {".json"});
                 check_distinct({options->picture, options->error_map, options->report});
                 check_distinct({options->reference, options->error_map, options->report});
-                if (is_tree(options->picture) != is_tree(options->reference))
+                const bool tree = is_tree(options->picture), map = !tree && is_reflection_map(options->picture);
+                if (tree != is_tree(options->reference) || map != is_reflection_map(options->reference))
                     throw InputError("'" + options->picture.string() + "' and '" + options->reference.string() +
-                                     "' are not of one kind; compare two shaded trees, or two pictures");
-                if (is_tree(options->picture))
+                                     "' are not of one kind; compare two shaded trees, two reflection maps, or two "
+                                     "pictures");
+                if (tree)
                     compare_trees(*options, context);
+                else if (map)
+                    compare_reflection_maps(*options, context);
                 else
                     compare_pictures(*options, context);
             }};

@@ -1,5 +1,7 @@
-// `kokage compare` on pictures.
+// `kokage compare` on pictures and reflection maps.
 #include "common/scene/image_file.h"
+#include "reflection/maps/cube_file.h"
+#include "reflection/maps/map_file.h"
 #include "tests/support/program_run.h"
 
 #include <nlohmann/json.hpp>
@@ -48,6 +50,32 @@ TEST(Compare, FiguresAndMapAreWritten) {
     EXPECT_NE(run.output.find(std::string(report["error_map"]["colours"])), std::string::npos);
     EXPECT_TRUE(report["warnings"].empty());
     EXPECT_EQ(run.errors, "");
+}
+
+TEST(Compare, ReflectionMapsOfDifferentFilesAreCompared) {
+    TemporaryFolder folder;
+    ShellMap shells({.kind = LobeKind::ggx, .least_parameter = 0.4, .most_parameter = 1});
+    shells.set_texels(std::vector<glm::vec3>(shells.layout().size(), glm::vec3(0.5f)));
+    write_map(folder / "shells.exr", shells);
+    PrefilteredCube cube = empty_cube({.size = 8, .kind = LobeKind::ggx, .parameters = {0.5, 1}});
+    for (PrefilteredCube::Level& level : cube.levels)
+        std::fill(level.texels.begin(), level.texels.end(), glm::vec3(0.25f));
+    write_ktx2(folder / "cube.ktx2", cube, TexelFormat::half_rgb);
+    const ProgramRun run =
+        run_kokage({"compare", "shells.exr", "cube.ktx2", "--report", "r.json", "-o", "map.png"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const auto report = nlohmann::json::parse(read_text(folder / "r.json"));
+    EXPECT_NEAR(double(report["error"]["mean_error_255"]), 0.25 * 255, 1e-3);
+    EXPECT_NEAR(double(report["error"]["max_relative_error"]), 1, 1e-5);
+    EXPECT_EQ(report["lobes"].size(), 2u);
+    EXPECT_EQ(load_image(folder / "map.png").height, 256);
+    save_image(folder / "picture.exr", grey_ramp(0));
+    for (const auto& [a, b] : {std::pair{"shells.exr", "picture.exr"}, {"picture.exr", "cube.ktx2"}}) {
+        const ProgramRun unlike = run_kokage({"compare", a, b}, folder.path());
+        EXPECT_EQ(unlike.status, 2);
+        EXPECT_TRUE(is_one_complaint(unlike.errors)) << unlike.errors;
+        EXPECT_NE(unlike.errors.find("not of one kind"), std::string::npos);
+    }
 }
 
 TEST(Compare, LinearAgainstDisplayColoursIsWarnedOf) {
