@@ -1,106 +1,15 @@
 #include "trees/bark_axis.h"
 
+#include "trees/level_set_axis.h"
+
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <queue>
 
 namespace kokage {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-
-/// A set of vertices that becomes a point of the axis.
-struct LevelSet {
-    int level = 0;
-    std::vector<std::uint32_t> members;
-    std::vector<std::uint32_t> linked; ///< other sets that share an edge with it
-    std::uint32_t joined_to = kNone;
-
-    void take(LevelSet& other) {
-        members.insert(members.end(), other.members.begin(), other.members.end());
-        linked.insert(linked.end(), other.linked.begin(), other.linked.end());
-        other.members.clear();
-        other.linked.clear();
-    }
-};
-
-std::uint32_t find_set(std::vector<LevelSet>& sets, std::uint32_t set) {
-    while (sets[set].joined_to != kNone) {
-        if (sets[sets[set].joined_to].joined_to != kNone)
-            sets[set].joined_to = sets[sets[set].joined_to].joined_to;
-        set = sets[set].joined_to;
-    }
-    return set;
-}
-
-/// Joins the sets of one level that a set of a higher level touches, from the highest level down: what goes apart and
-/// comes together again on the way to the tip is one limb.
-void close_loops(std::vector<LevelSet>& sets) {
-    std::vector<std::uint32_t> order(sets.size());
-    std::iota(order.begin(), order.end(), 0u);
-    std::stable_sort(order.begin(), order.end(),
-                     [&](std::uint32_t a, std::uint32_t b) { return sets[a].level > sets[b].level; });
-    for (const std::uint32_t index : order) {
-        if (sets[index].joined_to != kNone)
-            continue;
-        std::vector<std::pair<int, std::uint32_t>> lower;
-        for (const std::uint32_t link : sets[index].linked) {
-            const std::uint32_t other = find_set(sets, link);
-            if (sets[other].level < sets[index].level)
-                lower.emplace_back(sets[other].level, other);
-        }
-        std::sort(lower.begin(), lower.end());
-        for (std::size_t i = 1; i < lower.size(); ++i) {
-            const std::uint32_t a = find_set(sets, lower[i - 1].second), b = find_set(sets, lower[i].second);
-            if (lower[i - 1].first != lower[i].first || a == b)
-                continue;
-            sets[a].take(sets[b]);
-            sets[b].joined_to = a;
-        }
-    }
-}
-
-/// A tree of sets while it is simplified.
-struct Knot {
-    glm::dvec3 sum{0.0};
-    std::vector<std::uint32_t> members;
-    std::vector<std::uint32_t> children;
-    std::uint32_t parent = kNone;
-    bool gone = false;
-
-    glm::dvec3 centre() const { return sum / double(members.size()); }
-};
-
-double radius_of(const Knot& knot, std::span<const glm::vec3> positions) {
-    const glm::dvec3 centre = knot.centre();
-    double sum = 0;
-    for (const std::uint32_t v : knot.members)
-        sum += glm::distance(glm::dvec3(positions[v]), centre);
-    return sum / double(knot.members.size());
-}
-
-/// Neighbouring sets nearer to each other than the wood is thick become one, from the tips down.
-void join_near_knots(std::vector<Knot>& knots, const std::vector<std::uint32_t>& order,
-                     std::span<const glm::vec3> positions) {
-    for (std::size_t i = order.size(); i-- > 1;) {
-        const std::uint32_t index = order[i];
-        Knot& knot = knots[index];
-        Knot& parent = knots[knot.parent];
-        const double radius = std::max(radius_of(knot, positions), radius_of(parent, positions));
-        const bool chain = parent.children.size() == 1, spur = knot.children.empty();
-        if ((!chain && !spur) || glm::distance(knot.centre(), parent.centre()) >= radius)
-            continue;
-        parent.sum += knot.sum;
-        parent.members.insert(parent.members.end(), knot.members.begin(), knot.members.end());
-        std::erase(parent.children, index);
-        for (const std::uint32_t child : knot.children) {
-            knots[child].parent = knot.parent;
-            parent.children.push_back(child);
-        }
-        knot.gone = true;
-    }
-}
 
 glm::vec3 centre_of(const std::vector<std::uint32_t>& ring, std::span<const glm::vec3> positions) {
     glm::dvec3 sum(0.0);
@@ -363,87 +272,7 @@ std::vector<AxisNode> BarkMesh::axis_tree(const BarkPiece& piece, std::uint32_t 
     const std::uint32_t tip = furthest_vertex(piece);
     measure_distances(tip, piece);
     const float width = std::max(1.5f * float(piece.thickness), distance_[furthest_vertex(piece)] / 256);
-    const auto level = [&](std::uint32_t v) { return width > 0 ? int(distance_[v] / width) : 0; };
-
-    // A set for each connected part of a level.
-    std::vector<LevelSet> sets;
-    for (const std::uint32_t v : piece.vertices)
-        node_of_[v] = kNone;
-    for (const std::uint32_t start : piece.vertices) {
-        if (node_of_[start] != kNone)
-            continue;
-        const std::uint32_t index = std::uint32_t(sets.size());
-        LevelSet set;
-        set.level = level(start);
-        set.members.push_back(start);
-        node_of_[start] = index;
-        for (std::size_t i = 0; i < set.members.size(); ++i)
-            for (const std::uint32_t other : neighbours_.of(set.members[i]))
-                if (node_of_[other] == kNone && level(other) == set.level) {
-                    node_of_[other] = index;
-                    set.members.push_back(other);
-                }
-        sets.push_back(std::move(set));
-    }
-    for (const std::uint32_t v : piece.vertices)
-        for (const std::uint32_t other : neighbours_.of(v))
-            if (node_of_[other] != node_of_[v])
-                sets[node_of_[v]].linked.push_back(node_of_[other]);
-    close_loops(sets);
-
-    // Each set hangs on the highest one below it (towards the tip); then the whole is rooted at the base instead.
-    std::vector<std::vector<std::uint32_t>> links(sets.size());
-    for (std::uint32_t i = 0; i < sets.size(); ++i) {
-        if (sets[i].joined_to != kNone)
-            continue;
-        std::uint32_t below = kNone;
-        for (const std::uint32_t link : sets[i].linked) {
-            const std::uint32_t other = find_set(sets, link);
-            if (sets[other].level < sets[i].level && (below == kNone || sets[other].level > sets[below].level))
-                below = other;
-        }
-        if (below != kNone) {
-            links[i].push_back(below);
-            links[below].push_back(i);
-        }
-    }
-    std::vector<Knot> knots(sets.size());
-    std::vector<std::uint32_t> order{find_set(sets, node_of_[base])};
-    for (std::size_t i = 0; i < order.size(); ++i) {
-        Knot& knot = knots[order[i]];
-        knot.members = sets[order[i]].members;
-        for (const std::uint32_t v : knot.members)
-            knot.sum += glm::dvec3(positions_[v]);
-        for (const std::uint32_t other : links[order[i]])
-            if (other != knot.parent) {
-                knots[other].parent = order[i];
-                knot.children.push_back(other);
-                order.push_back(other);
-            }
-    }
-    join_near_knots(knots, order, positions_);
-
-    std::vector<AxisNode> nodes;
-    std::vector<std::uint32_t> number(knots.size(), kNone);
-    for (const std::uint32_t index : order) {
-        const Knot& knot = knots[index];
-        if (knot.gone)
-            continue;
-        number[index] = std::uint32_t(nodes.size());
-        AxisNode node;
-        node.position = glm::vec3(knot.centre());
-        node.radius_m = float(radius_of(knot, positions_));
-        if (!nodes.empty()) {
-            node.parent = number[knot.parent];
-            nodes[node.parent].children.push_back(number[index]);
-        }
-        nodes.push_back(std::move(node));
-    }
-    for (std::uint32_t i = std::uint32_t(nodes.size()); i-- > 1;) {
-        AxisNode& parent = nodes[nodes[i].parent];
-        parent.reach = std::max(parent.reach, nodes[i].reach + glm::distance(parent.position, nodes[i].position));
-    }
-    return nodes;
+    return LevelSetAxis{positions_, neighbours_, distance_, node_of_}.tree(piece.vertices, width, base);
 }
 
 } // namespace kokage

@@ -1,10 +1,9 @@
 #include "trees/foreign_tree.h"
 
-#include "common/geometry/triangle_topology.h"
 #include "common/services/count_text.h"
-#include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "trees/axis_samples.h"
+#include "trees/clean_mesh.h"
 #include "trees/find_branching.h"
 #include "trees/find_foliage.h"
 #include "trees/find_leaves.h"
@@ -13,7 +12,6 @@
 #include "trees/surface_patches.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -21,49 +19,6 @@
 
 namespace kokage {
 namespace {
-
-double area_of(const std::vector<glm::vec3>& positions, const glm::uvec3& t) {
-    const glm::dvec3 a(positions[t.x]), b(positions[t.y]), c(positions[t.z]);
-    return 0.5 * glm::length(glm::cross(b - a, c - a));
-}
-
-/// Drops triangles whose corners coincide, and of two triangles with the same corners in opposite directions (a sheet
-/// drawn twice for viewers that cull back faces) the second: leaves are two-sided here.
-void drop_degenerate_and_back_faces(SceneMesh& mesh, bool drop_back_faces, std::size_t& back_faces) {
-    const std::vector<std::uint32_t> welded = weld(mesh.positions);
-    std::set<std::array<std::uint32_t, 3>> seen;
-    std::vector<glm::uvec3> kept;
-    kept.reserve(mesh.triangles.size());
-    for (const glm::uvec3& t : mesh.triangles) {
-        std::array<std::uint32_t, 3> corners{welded[t.x], welded[t.y], welded[t.z]};
-        if (corners[0] == corners[1] || corners[1] == corners[2] || corners[2] == corners[0])
-            continue;
-        if (drop_back_faces) {
-            // Rotated so that the lowest comes first: the order of the other two tells the direction.
-            std::rotate(corners.begin(), std::min_element(corners.begin(), corners.end()), corners.end());
-            const std::array<std::uint32_t, 3> reversed{corners[0], corners[2], corners[1]};
-            if (seen.contains(reversed)) {
-                ++back_faces;
-                continue;
-            }
-            seen.insert(corners);
-        }
-        kept.push_back(t);
-    }
-    mesh.triangles = std::move(kept);
-}
-
-glm::vec3 mean_vertex_color(const SceneMesh& mesh) {
-    glm::dvec3 sum(0.0);
-    double weight = 0;
-    for (const glm::uvec3& t : mesh.triangles) {
-        const double area = area_of(mesh.positions, t);
-        for (const std::uint32_t v : {t.x, t.y, t.z})
-            sum += area * glm::dvec3(glm::clamp(glm::vec3(mesh.colors[v]), 0.f, 1.f));
-        weight += 3 * area;
-    }
-    return weight > 0 && std::isfinite(sum.x + sum.y + sum.z) ? glm::vec3(sum / weight) : glm::vec3(1.f);
-}
 
 /// A part in the making: meshes of the same kind and look, one after the other, only the vertices that they use.
 class PartBuilder {
@@ -113,7 +68,7 @@ std::vector<Leaf> leaf_centres(const Tree& tree, std::uint32_t count) {
             const glm::dvec3 centre = (glm::dvec3(part.positions[triangle.x]) + glm::dvec3(part.positions[triangle.y]) +
                                        glm::dvec3(part.positions[triangle.z])) /
                                       3.0;
-            const double area = area_of(part.positions, triangle);
+            const double area = triangle_area(part.positions, triangle);
             const std::uint32_t leaf = part.triangle_patch[t];
             sums[leaf] += area * centre;
             areas[leaf] += area;
@@ -133,31 +88,8 @@ float mean_leaf_radius(const Tree& tree) {
     for (const TreePart& part : tree.parts)
         if (part.kind == TreePartKind::foliage)
             for (const glm::uvec3& triangle : part.triangles)
-                area += area_of(part.positions, triangle);
+                area += triangle_area(part.positions, triangle);
     return tree.leaves.empty() ? 0.f : float(std::sqrt(area / double(tree.leaves.size()) / kPiDouble));
-}
-
-/// Bark patches: about as long as the wood is thick around, but no smaller than a quarter of a leaf across, and turning
-/// by at most 45 degrees, except on twigs, which a ring fits.
-void cut_bark(Tree& tree, std::vector<SceneMesh>& bark, const std::map<std::pair<int, int>, std::size_t>& part_of,
-              std::vector<PartBuilder>& parts, float crown) {
-    const NearestAxis nearest_axis(tree.skeleton);
-    const float least = std::max(0.005f * crown, 0.25f * mean_leaf_radius(tree));
-    SurfacePatchLimits limits;
-    limits.max_turn = 0.7854f;
-    limits.keep_cards = false;
-    limits.max_radius = [&](const glm::vec3& place) {
-        const AxisPlace nearest = nearest_axis.at(place);
-        // A quarter of the circumference wide and as long as the circumference: an area of (2 pi r)^2 / 4.
-        const float around = 2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown);
-        return std::max(0.5f * around / std::sqrt(kPi), least);
-    };
-    for (SceneMesh& mesh : bark) {
-        const std::vector<std::uint32_t> patch = surface_patches(mesh.positions, mesh.triangles, limits);
-        const std::size_t index = part_of.at({mesh.material, 1});
-        parts[index].append(mesh, patch, tree.bark_patch_count);
-        tree.bark_patch_count += patch_count(patch);
-    }
 }
 
 } // namespace
@@ -211,121 +143,184 @@ void set_upright(MeshScene& scene) {
     }
 }
 
+/// A tree from a flat scene, step by step.
+class ForeignTreeBuilder {
+  public:
+    ForeignTreeBuilder(MeshScene scene, const std::string& path, const ReadOptions& options, Progress& progress)
+        : scene_(std::move(scene)), options_(options), progress_(progress) {
+        tree_.name = std::filesystem::path(path).stem().string();
+        tree_.source = path;
+    }
+
+    Tree build() {
+        place();
+        progress_.begin("finding foliage", 1);
+        const FoundFoliage found = find_foliage(scene_, options_.foliage_materials, tree_.source);
+        take_notes(scene_.notes);
+        take_notes(found.notes);
+        take_notes(stand_in_for_lost_colors(scene_, found.kinds));
+        take_meshes(found.kinds);
+        make_leaves();
+        progress_.begin("finding branches", 1);
+        find_wood();
+        progress_.throw_if_stopped();
+        cut_bark();
+        tree_.parts.clear();
+        for (PartBuilder& builder : parts_)
+            tree_.parts.push_back(std::move(builder.part));
+        return std::move(tree_);
+    }
+
+  private:
+    void take_notes(const std::vector<std::string>& notes) {
+        tree_.notes.insert(tree_.notes.end(), notes.begin(), notes.end());
+    }
+
+    /// Upright, in metres.
+    void place() {
+        if (options_.z_is_up)
+            set_upright(scene_);
+        tree_.origin = scene_.origin * options_.scale;
+        if (options_.scale == 1)
+            return;
+        for (SceneMesh& mesh : scene_.meshes)
+            for (glm::vec3& position : mesh.positions)
+                position = glm::vec3(glm::dvec3(position) * options_.scale);
+    }
+
+    /// Foliage and bark apart; vertex colours make a material of their own, as a mean.
+    void take_meshes(const std::vector<TreePartKind>& kinds) {
+        std::size_t back_faces = 0;
+        const std::size_t file_materials = scene_.materials.size();
+        color_factors_.assign(file_materials, glm::vec3(1.f));
+        for (std::size_t m = 0; m < scene_.meshes.size(); ++m) {
+            SceneMesh& mesh = scene_.meshes[m];
+            const bool is_leaf = kinds[m] == TreePartKind::foliage;
+            back_faces += drop_degenerate_and_back_faces(mesh, is_leaf);
+            if (mesh.triangles.empty())
+                continue;
+            if (!mesh.colors.empty()) {
+                scene_.materials.push_back(scene_.materials[std::size_t(mesh.material)]);
+                color_factors_.push_back(mean_vertex_color(mesh));
+                mesh.material = int(scene_.materials.size()) - 1;
+            }
+            (is_leaf ? foliage_ : bark_).push_back(std::move(mesh));
+        }
+        if (scene_.materials.size() > file_materials)
+            tree_.notes.push_back("vertex colours were averaged over each of " +
+                                  counted(scene_.materials.size() - file_materials, "mesh", "meshes"));
+        if (back_faces > 0)
+            tree_.notes.push_back("dropped " + counted(back_faces, "triangle", "triangles") +
+                                  " that only show others from behind: leaves are two-sided");
+    }
+
+    /// The part for meshes of a material and kind.
+    PartBuilder& part_of(int material, TreePartKind kind) {
+        const auto [place, is_new] = part_of_.try_emplace({material, kind}, parts_.size());
+        if (is_new) {
+            const auto [number, unseen] = material_of_.try_emplace(material, std::uint32_t(tree_.materials.size()));
+            if (unseen)
+                tree_.materials.push_back(tree_material(scene_.materials[std::size_t(material)],
+                                                        color_factors_[std::size_t(material)], tree_.notes));
+            parts_.emplace_back().part.kind = kind;
+            parts_.back().part.material = number->second;
+        }
+        return parts_[place->second];
+    }
+
+    /// A part of the tree for the time being, of what is needed to measure it.
+    void show_shape(const SceneMesh& mesh, TreePartKind kind) {
+        TreePart& part = tree_.parts.emplace_back();
+        part.kind = kind;
+        part.positions = mesh.positions;
+        part.triangles = mesh.triangles;
+    }
+
+    void make_leaves() {
+        for (const SceneMesh& mesh : foliage_)
+            show_shape(mesh, TreePartKind::foliage);
+        for (const SceneMesh& mesh : bark_)
+            show_shape(mesh, TreePartKind::bark);
+        crown_ = crown_radius(tree_);
+        tree_.parts.clear();
+        const FoundLeaves leaves = find_leaves(foliage_, scene_.materials, options_.leaf_size, crown_, progress_);
+        for (std::size_t m = 0; m < foliage_.size(); ++m)
+            part_of(foliage_[m].material, TreePartKind::foliage).append(foliage_[m], leaves.leaf_of[m], 0);
+        for (const PartBuilder& builder : parts_)
+            tree_.parts.push_back(builder.part);
+        tree_.leaves = leaf_centres(tree_, leaves.count);
+        tell(leaves);
+    }
+
+    void tell(const FoundLeaves& leaves) {
+        if (options_.leaf_size > 0 && options_.leaf_size < 1e-3f * crown_)
+            tree_.notes.push_back("the leaf size, " + length_text(options_.leaf_size) +
+                                  ", is less than a thousandth of the crown's radius of " + length_text(crown_) +
+                                  ": foliage falls apart into its triangles if that is not what leaves measure");
+        if (leaves.count == 0)
+            tree_.notes.push_back("no foliage was found: say which material or mesh it is");
+        else
+            tree_.notes.push_back(counted(leaves.count, "leaf", "leaves") +
+                                  ": connected foliage, cut where it turns by more than 30 degrees or is larger than " +
+                                  length_text(leaves.largest_radius_m) + " in radius");
+        if (leaves.stalks > 0)
+            tree_.notes.push_back(counted(leaves.stalks, "stalk was", "stalks were") + " joined to their leaves");
+    }
+
+    /// Branching, from what bark is wood.
+    void find_wood() {
+        std::set<std::string> objects;
+        for (const SceneMesh& mesh : bark_) {
+            part_of(mesh.material, TreePartKind::bark);
+            const std::string& material = scene_.materials[std::size_t(mesh.material)].name;
+            if (names_object(material)) // it takes part in the light, but no branch begins in it
+                objects.insert(material);
+            else
+                show_shape(mesh, TreePartKind::bark);
+        }
+        for (const std::string& material : objects)
+            tree_.notes.push_back("material '" + shown_name(material) + "' is no wood: its name");
+        infer_branching(tree_);
+    }
+
+    /// Bark patches: about as long as the wood is thick around, but no smaller than a quarter of a leaf across, and
+    /// turning by at most 45 degrees, except on twigs, which a ring fits.
+    void cut_bark() {
+        const NearestAxis nearest_axis(tree_.skeleton);
+        const float least = std::max(0.005f * crown_, 0.25f * mean_leaf_radius(tree_));
+        SurfacePatchLimits limits;
+        limits.max_turn = 0.7854f;
+        limits.keep_cards = false;
+        limits.max_radius = [&](const glm::vec3& place) {
+            const AxisPlace nearest = nearest_axis.at(place);
+            // A quarter of the circumference wide and as long as the circumference: an area of (2 pi r)^2 / 4.
+            const float around =
+                2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown_);
+            return std::max(0.5f * around / std::sqrt(kPi), least);
+        };
+        for (const SceneMesh& mesh : bark_) {
+            const std::vector<std::uint32_t> patch = surface_patches(mesh.positions, mesh.triangles, limits);
+            part_of(mesh.material, TreePartKind::bark).append(mesh, patch, tree_.bark_patch_count);
+            tree_.bark_patch_count += patch_count(patch);
+        }
+    }
+
+    MeshScene scene_;
+    const ReadOptions& options_;
+    Progress& progress_;
+    Tree tree_;
+    std::vector<SceneMesh> foliage_, bark_;
+    std::vector<glm::vec3> color_factors_; ///< of each material: the mean of its vertices' colours
+    std::vector<PartBuilder> parts_;
+    std::map<std::pair<int, TreePartKind>, std::size_t> part_of_; ///< (material, kind)
+    std::map<int, std::uint32_t> material_of_;                    ///< the file's -> the tree's
+    float crown_ = 0;                                             ///< radius, metres
+};
+
 } // namespace
 
 Tree tree_from_scene(MeshScene scene, const std::string& path, const ReadOptions& options, Progress& progress) {
-    if (options.z_is_up)
-        set_upright(scene);
-    Tree tree;
-    tree.name = std::filesystem::path(path).stem().string();
-    tree.source = path;
-    tree.origin = scene.origin * options.scale;
-    tree.notes = scene.notes;
-    if (options.scale != 1)
-        for (SceneMesh& mesh : scene.meshes)
-            for (glm::vec3& position : mesh.positions)
-                position = glm::vec3(glm::dvec3(position) * options.scale);
-
-    progress.begin("finding foliage", 1);
-    const FoundFoliage found = find_foliage(scene, options.foliage_materials, path);
-    tree.notes.insert(tree.notes.end(), found.notes.begin(), found.notes.end());
-    for (std::string& note : stand_in_for_lost_colors(scene, found.kinds))
-        tree.notes.push_back(std::move(note));
-
-    // A part for each material and kind; vertex colours make a material of their own, as a mean.
-    std::map<std::pair<int, int>, std::size_t> part_of; // (material, kind)
-    std::vector<PartBuilder> parts;
-    std::vector<SceneMesh> foliage, bark;
-    std::size_t back_faces = 0;
-    const std::size_t file_materials = scene.materials.size();
-    std::vector<glm::vec3> color_factors(file_materials, glm::vec3(1.f));
-    for (std::size_t m = 0; m < scene.meshes.size(); ++m) {
-        SceneMesh& mesh = scene.meshes[m];
-        const bool is_leaf = found.kinds[m] == TreePartKind::foliage;
-        drop_degenerate_and_back_faces(mesh, is_leaf, back_faces);
-        if (mesh.triangles.empty())
-            continue;
-        if (!mesh.colors.empty()) {
-            scene.materials.push_back(scene.materials[std::size_t(mesh.material)]);
-            color_factors.push_back(mean_vertex_color(mesh));
-            mesh.material = int(scene.materials.size()) - 1;
-        }
-        (is_leaf ? foliage : bark).push_back(std::move(mesh));
-    }
-    if (scene.materials.size() > file_materials)
-        tree.notes.push_back("vertex colours were averaged over each of " +
-                             counted(scene.materials.size() - file_materials, "mesh", "meshes"));
-    if (back_faces > 0)
-        tree.notes.push_back("dropped " + counted(back_faces, "triangle", "triangles") +
-                             " that only show others from behind: leaves are two-sided");
-    std::map<int, std::uint32_t> material_of;
-    const auto part_index = [&](int material, TreePartKind kind) {
-        const auto [place, is_new] = part_of.try_emplace({material, kind == TreePartKind::bark ? 1 : 0}, parts.size());
-        if (is_new) {
-            const auto [number, unseen] = material_of.try_emplace(material, std::uint32_t(tree.materials.size()));
-            if (unseen)
-                tree.materials.push_back(tree_material(scene.materials[std::size_t(material)],
-                                                       color_factors[std::size_t(material)], tree.notes));
-            parts.emplace_back().part.kind = kind;
-            parts.back().part.material = number->second;
-        }
-        return place->second;
-    };
-
-    // Leaves.
-    for (const std::vector<SceneMesh>* meshes : {&foliage, &bark}) // for the crown's radius
-        for (const SceneMesh& mesh : *meshes) {
-            tree.parts.emplace_back();
-            tree.parts.back().kind = meshes == &foliage ? TreePartKind::foliage : TreePartKind::bark;
-            tree.parts.back().positions = mesh.positions;
-            tree.parts.back().triangles = mesh.triangles;
-        }
-    const float crown = crown_radius(tree);
-    tree.parts.clear();
-    const FoundLeaves leaves = find_leaves(foliage, scene.materials, options.leaf_size, crown, progress);
-    for (std::size_t m = 0; m < foliage.size(); ++m)
-        parts[part_index(foliage[m].material, TreePartKind::foliage)].append(foliage[m], leaves.leaf_of[m], 0);
-    const std::uint32_t leaf_count = leaves.count;
-    if (options.leaf_size > 0 && options.leaf_size < 1e-3f * crown)
-        tree.notes.push_back("the leaf size, " + length_text(options.leaf_size) +
-                             ", is less than a thousandth of the " + "crown's radius of " + length_text(crown) +
-                             ": foliage falls apart into its triangles if that is not what leaves measure");
-    if (leaf_count == 0)
-        tree.notes.push_back("no foliage was found: say which material or mesh it is");
-    else
-        tree.notes.push_back(counted(leaf_count, "leaf", "leaves") +
-                             ": connected foliage, cut where it turns by more than 30 degrees or is larger than " +
-                             length_text(leaves.largest_radius_m) + " in radius");
-    if (leaves.stalks > 0)
-        tree.notes.push_back(counted(leaves.stalks, "stalk was", "stalks were") + " joined to their leaves");
-
-    // Bark and branching.
-    for (PartBuilder& builder : parts)
-        tree.parts.push_back(builder.part);
-    tree.leaves = leaf_centres(tree, leaf_count);
-    std::set<std::string> objects;
-    for (const SceneMesh& mesh : bark) {
-        part_index(mesh.material, TreePartKind::bark);
-        const std::string& material = scene.materials[std::size_t(mesh.material)].name;
-        if (names_object(material)) { // it takes part in the light, but no branch begins in it
-            objects.insert(material);
-            continue;
-        }
-        TreePart whole;
-        whole.positions = mesh.positions;
-        whole.triangles = mesh.triangles;
-        tree.parts.push_back(std::move(whole));
-    }
-    for (const std::string& material : objects)
-        tree.notes.push_back("material '" + shown_name(material) + "' is no wood: its name");
-    progress.begin("finding branches", 1);
-    infer_branching(tree);
-    progress.throw_if_stopped();
-    cut_bark(tree, bark, part_of, parts, crown);
-    tree.parts.clear();
-    for (PartBuilder& builder : parts)
-        tree.parts.push_back(std::move(builder.part));
-    return tree;
+    return ForeignTreeBuilder(std::move(scene), path, options, progress).build();
 }
 
 } // namespace kokage
