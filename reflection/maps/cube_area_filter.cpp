@@ -114,6 +114,7 @@ class CurveWalk {
         set_columns(first_turn, end_turn, m);
         int row = row_of(slope_ * std::cos(psi));
         bool falling = false; // the curve climbs until psi = 0
+        double crossing = row_crossing(row, falling);
         for (int edge = 0; edge < family_.edges; ++edge) {
             const double edge_end =
                 edge + 1 == family_.edges ? end : std::atan(scale_ * (2. * (edge + 1) / family_.edges - 1));
@@ -128,7 +129,7 @@ class CurveWalk {
                     next = 0;
                     stop = at_summit;
                 }
-                if (const double crossing = row_crossing(row, falling); crossing < next) {
+                if (crossing < next) {
                     next = std::max(crossing, psi);
                     stop = at_row;
                 }
@@ -136,14 +137,18 @@ class CurveWalk {
                 add(first_turn, end_turn, edge, row, next - psi, integral - integral_of_height);
                 psi = next;
                 integral_of_height = integral;
-                if (stop == at_column)
-                    set_columns(first_turn, end_turn, ++m);
-                else if (stop == at_row)
-                    row += falling ? 1 : -1;
-                else if (stop == at_summit)
-                    falling = true;
-                else
+                if (stop == at_edge)
                     break;
+                if (stop == at_column) {
+                    ++m;
+                    next_columns(first_turn, end_turn);
+                    continue;
+                }
+                if (stop == at_row)
+                    row += falling ? 1 : -1;
+                else
+                    falling = true;
+                crossing = row_crossing(row, falling);
             }
         }
     }
@@ -169,6 +174,13 @@ class CurveWalk {
             const double place = (kQuarterTurns[std::size_t(turn)] + 1) / 2 * columns_.width;
             const int column = (int(std::floor(place)) - m - 1) % columns_.width;
             column_[std::size_t(turn)] = column < 0 ? column + columns_.width : column;
+        }
+    }
+
+    void next_columns(int first_turn, int end_turn) {
+        for (int turn = first_turn; turn < end_turn; ++turn) {
+            int& column = column_[std::size_t(turn)];
+            column = column == 0 ? columns_.width - 1 : column - 1;
         }
     }
 
