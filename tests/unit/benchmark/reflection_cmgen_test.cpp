@@ -12,13 +12,13 @@ namespace {
 nlohmann::json run(const std::filesystem::path& data, std::string& told) {
     const TemporaryFolder folder;
     std::ostringstream out;
-    EXPECT_EQ(run_reflection_benchmark({.data_folder = data,
-                                        .output_folder = folder.path(),
-                                        .quick = true,
-                                        .plots = false,
-                                        .experiments = {"cmgen"}},
-                                       silent_progress(), out),
-              0);
+    ReflectionBenchmarkOptions options;
+    options.data_folder = data;
+    options.output_folder = folder.path();
+    options.quick = true;
+    options.plots = false;
+    options.experiments = {"cmgen"};
+    EXPECT_EQ(run_reflection_benchmark(options, silent_progress(), out), 0);
     told = out.str();
     std::vector<std::string> names = folder.files();
     EXPECT_EQ(names, (std::vector<std::string>{"reflection.json", "reflection.md"})) << "maps are taken away again";
