@@ -3,6 +3,7 @@
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "reflection/maps/face_chart.h"
+#include "reflection/maps/shell_lookup.h"
 #include "reflection/maps/texel_prefilter.h"
 
 #include <algorithm>
@@ -12,7 +13,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kLeastResolution = 16, kMostResolution = 8192, kMostShells = 256;
+constexpr int kLeastResolution = 16, kMostResolution = 8192, kMostShells = int(ShellTable::most_shells);
 
 void check(const ShellSettings& s) {
     const auto number = [](double value) { return std::to_string(value); };
@@ -181,11 +182,44 @@ glm::vec3 ShellMap::lookup(const glm::vec3& direction, double parameter) const {
     return glm::max(sum, glm::vec3(0));
 }
 
+ShellTable ShellMap::table() const {
+    ShellTable table;
+    table.kind = settings_.kind;
+    table.filter = settings_.filter;
+    table.format = settings_.format;
+    table.texels = texels_.data();
+    table.least_width = shells_.back().width;
+    table.most_width = shells_.front().width;
+    table.first_power = first_power_;
+    table.shells_a_power = shells_a_power_;
+    table.last_shell = std::int32_t(shells_.size()) - 1;
+    table.last_interval = std::max(table.last_shell - 1, 0);
+    for (std::size_t i = 0; i < shells_.size(); ++i) {
+        table.width[i] = shells_[i].width;
+        table.resolution[i] = shells_[i].resolution;
+        table.first[i] = std::int32_t(shells_[i].first);
+    }
+    return table;
+}
+
 void ShellMap::lookup(std::span<const glm::vec3> directions, std::span<const float> parameters,
                       std::span<glm::vec3> filtered) const {
+    const ShellTable shells = table();
+    const std::size_t lanes = shell_lookup_lanes();
     parallel_blocks(directions.size(), 4096, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i)
-            filtered[i] = lookup(directions[i], double(parameters[i]));
+        const std::size_t whole = begin + (end - begin) / lanes * lanes;
+        if (whole > begin)
+            look_up_shells(shells, &directions[begin].x, &parameters[begin], &filtered[begin].x, whole - begin);
+        if (whole == end)
+            return;
+        // The last ones, which do not fill a vector: with copies of the first of them.
+        std::vector<glm::vec3> rest(lanes, directions[whole]), results(lanes);
+        std::vector<float> rest_parameters(lanes, parameters[whole]);
+        std::copy(directions.begin() + std::ptrdiff_t(whole), directions.begin() + std::ptrdiff_t(end), rest.begin());
+        std::copy(parameters.begin() + std::ptrdiff_t(whole), parameters.begin() + std::ptrdiff_t(end),
+                  rest_parameters.begin());
+        look_up_shells(shells, &rest[0].x, rest_parameters.data(), &results[0].x, lanes);
+        std::copy_n(results.begin(), end - whole, filtered.begin() + std::ptrdiff_t(whole));
     });
 }
 

@@ -35,6 +35,8 @@
 
 namespace kokage {
 
+struct ShellTable;
+
 enum class TexelFilter {
     bilinear, ///< one bilinear read a shell
     cubic,    ///< B-spline: smooth, and a third of the error or less; four bilinear reads a shell on a GPU
@@ -96,6 +98,7 @@ class ShellMap {
     float shells_a_power() const { return shells_a_power_; }
 
   private:
+    ShellTable table() const;
     glm::vec3 shell_lookup(const Shell& shell, int face, float u, float v) const;
 
     ShellSettings settings_;

@@ -8,6 +8,7 @@
 
 #include <cmath>
 #include <gtest/gtest.h>
+#include <hwy/targets.h>
 #include <limits>
 
 namespace kokage {
@@ -104,21 +105,59 @@ TEST(ShellMap, SettingsThatMakeNoSenseAreRefused) {
     EXPECT_THROW(map.set_texels(std::vector<glm::vec3>(3)), InputError);
 }
 
-TEST(ShellMap, ManyLookupsAreTheSameAsOneByOne) {
-    ShellMap map({.most_parameter = 300});
+void expect_many_as_one_by_one(const ShellSettings& settings) {
+    ShellMap map(settings);
     Random random(4);
     std::vector<glm::vec3> texels(map.layout().size());
     for (glm::vec3& texel : texels)
         for (int c = 0; c < 3; ++c)
-            texel[c] = random.uniform();
+            texel[c] = random.uniform() < 0.1f ? 1e-6f * random.uniform() : random.uniform();
     map.set_texels(texels);
-    std::vector<glm::vec3> directions(10001), filtered(directions.size());
+    std::vector<glm::vec3> directions(5003), filtered(directions.size());
     std::vector<float> parameters(directions.size());
-    for (std::size_t i = 0; i < directions.size(); ++i)
-        directions[i] = random_direction(random), parameters[i] = std::exp(random.uniform(-1, 7));
+    for (std::size_t i = 0; i < directions.size(); ++i) {
+        directions[i] = random_direction(random);
+        parameters[i] = settings.kind == LobeKind::phong ? std::exp(random.uniform(-1, 7)) : random.uniform();
+    }
+    for (std::size_t i = 0; i < 24; ++i) { // axes, edges and corners of faces, both ends of the range
+        directions[i] = glm::normalize(glm::vec3(int(i % 3) - 1, int(i / 3 % 3) - 1,
+                                                 i < 9    ? 1
+                                                 : i < 18 ? -1
+                                                          : 0) +
+                                       glm::vec3(0, 0, i == 22 ? 1 : 0));
+        parameters[i] = i % 2 == 0 ? 0.f : 1e6f;
+    }
     map.lookup(directions, parameters, filtered);
     for (std::size_t i = 0; i < directions.size(); ++i)
-        ASSERT_LT(glm::length(filtered[i] - map.lookup(directions[i], double(parameters[i]))), 2e-5f);
+        ASSERT_LT(glm::length(filtered[i] - map.lookup(directions[i], double(parameters[i]))), 4e-5f)
+            << i << " " << parameters[i];
+}
+
+TEST(ShellMap, ManyLookupsAreTheSameAsOneByOneOnEveryInstructionSet) {
+    for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+        hwy::SetSupportedTargetsForTest(target);
+        hwy::GetChosenTarget().DeInit();
+        SCOPED_TRACE(hwy::TargetName(target));
+        for (const TexelFormat format : {TexelFormat::half_rgb, TexelFormat::float_rgb, TexelFormat::shared_exponent})
+            for (const TexelFilter filter : {TexelFilter::bilinear, TexelFilter::cubic})
+                expect_many_as_one_by_one({.most_parameter = 300, .filter = filter, .format = format});
+        expect_many_as_one_by_one({.kind = LobeKind::ggx, .least_parameter = 0.2, .most_parameter = 1});
+        expect_many_as_one_by_one({.least_parameter = 7, .most_parameter = 7});
+    }
+    hwy::SetSupportedTargetsForTest(0);
+    hwy::GetChosenTarget().DeInit();
+}
+
+TEST(ShellMap, FewLookupsFillNoVector) {
+    ShellMap map({.most_parameter = 30});
+    map.set_texels(std::vector<glm::vec3>(map.layout().size(), glm::vec3(0.25f, 0.5f, 1)));
+    for (std::size_t count = 0; count < 20; ++count) {
+        const std::vector<glm::vec3> directions(count, glm::vec3(0, 0, 1));
+        std::vector<glm::vec3> filtered(count);
+        map.lookup(directions, std::vector<float>(count, 3.f), filtered);
+        for (const glm::vec3& value : filtered)
+            EXPECT_LT(glm::length(value - glm::vec3(0.25f, 0.5f, 1)), 1e-5f);
+    }
 }
 
 } // namespace
