@@ -21,8 +21,8 @@ struct Experiment {
 };
 constexpr Experiment kExperiments[] = {
     {"tables", measure_tables},         {"spectral", measure_spectral}, {"hdr", measure_hdr},
-    {"containers", measure_containers}, {"video", measure_video},       {"skips", measure_skips},
-    {"cmgen", measure_cmgen},
+    {"containers", measure_containers}, {"teapot", measure_teapot},     {"video", measure_video},
+    {"skips", measure_skips},           {"cmgen", measure_cmgen},
 };
 
 class ReflectionRun {

@@ -31,6 +31,8 @@ void measure_spectral(const ExperimentContext& context);
 void measure_hdr(const ExperimentContext& context);
 /// "containers": shells and the cube, looked up between texels.
 void measure_containers(const ExperimentContext& context);
+/// "teapot": the paper's table 4 (reflection_teapot.h).
+void measure_teapot(const ExperimentContext& context);
 /// "video": frames a second of a cube of 64, all methods.
 void measure_video(const ExperimentContext& context);
 /// "skips": what baking only smoothness 0.3 to 0.6 saves.

@@ -70,6 +70,14 @@ std::string container_rows(const Records& records) {
     return text;
 }
 
+std::string teapot_row(const Records& records) {
+    const Condition by_shells = [](const ReflectionRecord& r) {
+        return of("teapot", "shells")(r) || of("teapot", "shells-vertex")(r);
+    };
+    return at_most("teapot through shells, all surroundings and smoothnesses: mean",
+                   worst(records, by_shells, &ReflectionRecord::mean_error_255), 0.2, "/255");
+}
+
 std::string hdr_rows(const Records& records) {
     const Condition real = [](const ReflectionRecord& r) {
         return of("hdr", "spectral")(r) && r.environment != "sun-1e6";
@@ -130,7 +138,7 @@ std::string reflection_figures(const Records& records) {
            at_least("spectral 64³: video on 2 cores",
                     worst(records, of("video", "spectral", 64), &ReflectionRecord::frames_per_second, false), 60,
                     " frames/s") +
-           hdr_rows(records) + container_rows(records) + cmgen_rows(records);
+           hdr_rows(records) + container_rows(records) + teapot_row(records) + cmgen_rows(records);
 }
 
 } // namespace kokage

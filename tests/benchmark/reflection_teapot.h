@@ -4,16 +4,18 @@
 #include "tests/benchmark/reflection_record.h"
 
 #include <filesystem>
-#include <vector>
+#include <functional>
 
 namespace kokage {
 
 struct TeapotSettings {
     std::filesystem::path data_folder; ///< holds objects/utah_teapot.obj and env/
-    std::filesystem::path pictures;    ///< where pictures and differences go; empty = none are saved
+    /// Folder of a picture for each environment and λ, teapot-<environment>-<λ>.png; empty = none are saved. From left
+    /// to right: the reference, "shells", its difference, "shells-uncorrected"'s difference (white: 8 levels of 256).
+    std::filesystem::path pictures;
     int width = 480, height = 360;
     int cube_size = 128; ///< s of the voxel cube, and of the scale of λ
-    bool quick = false;  ///< fewer environments and values of λ
+    bool quick = false;  ///< the pattern and the photograph, λ = 0.25 and mixed
 };
 
 /// For each environment and λ (1, 0.75, 0.5, 0.25 and mixed: lower half 0.1, upper half 1) one record a way to look up:
@@ -22,6 +24,7 @@ struct TeapotSettings {
 /// (uncorrected, and λ r interpolated between vertices as a 3D texture's coordinate); of mixed also "shells-vertex" (λ
 /// interpolated between vertices, and so in its reference). Errors are over covered pixels, after clamping to [0,1].
 /// cpu_seconds is the picture's. Throws InputError if a file is missing, Stopped.
-std::vector<ReflectionRecord> measure_teapot(const TeapotSettings& settings, Progress& progress = silent_progress());
+void measure_teapot(const TeapotSettings& settings, const std::function<void(const ReflectionRecord&)>& take,
+                    Progress& progress = silent_progress());
 
 } // namespace kokage
