@@ -8,6 +8,7 @@
 #include "trees/growth/materials.h"
 #include "trees/growth/skeleton.h"
 #include "trees/growth/wood_graph.h"
+#include "trees/growth/young_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -23,8 +24,9 @@ constexpr double shoots_per_point = 2.2;
 
 } // namespace
 
-Tree grow(const GrowthParameters& parameters, Progress& progress, WorkReport* report) {
-    check_parameters(parameters);
+Tree grow(const GrowthParameters& grown_parameters, Progress& progress, WorkReport* report) {
+    check_parameters(grown_parameters);
+    const GrowthParameters parameters = at_its_age(grown_parameters);
     Stopwatch watch;
     auto end_stage = [&](const char* name) {
         if (report)

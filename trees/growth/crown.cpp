@@ -3,6 +3,7 @@
 #include "trees/growth/directions.h"
 #include "trees/growth/leaf_shape.h"
 #include "trees/growth/streams.h"
+#include "trees/growth/young_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,10 +13,10 @@ namespace kokage {
 Crown::Crown(const GrowthParameters& p) : p_(p) {
     const double projection = p.leaves * mean_leaf_area(p) / p.leaf_area_index;
     // The hollows between billows take more of the crown's projection than shoots beyond the outline add: measured over
-    // seeds, the crown that grows has 0.92 times the projection of its nominal outline. A seedling is never smaller
-    // than its leaves.
+    // seeds, the crown that grows has 0.92 times the projection of its nominal outline. It is never smaller than its
+    // shoots and leaves; a seedling is little more than a leaf.
     constexpr double grown_share = 0.92;
-    const double smallest = 0.8 * (p.leaf_length + p.shoot_length);
+    const double smallest = std::lerp(0.8 * (p.leaf_length + p.shoot_length), 0.35 * p.leaf_length, youth(p));
     radius_m = float(std::max(std::sqrt(projection / (grown_share * kPiDouble)), smallest));
     height_m = float(2 * radius_m * p.height_to_width);
     base_m = float(height_m * p.crown_base);

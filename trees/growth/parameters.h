@@ -31,6 +31,7 @@ struct GrowthParameters {
     std::string species = "oak";
     std::uint64_t seed = 1;
     int leaves = 30000;
+    int young_below = 3000;
 
     // The crown, trunk, limbs, branches and bark: rows in parameters_of_wood.cpp.
     double leaf_area_index = 4.5, height_to_width = 0.84;

@@ -17,8 +17,13 @@ std::vector<ParameterRow> tree_rows() {
     seed.description.whole = true;
     seed.get = [](const P& p) { return double(p.seed); };
     seed.set = [](P& p, double v) { p.seed = std::uint64_t(v); };
-    return grouped("tree", {seed, whole("leaves", &P::leaves, "", 1, 2000000,
-                                        "Number of leaves; the tree's size follows from it.")});
+    return grouped(
+        "tree",
+        {seed, whole("leaves", &P::leaves, "", 1, 2000000, "Number of leaves; the tree's size follows from it."),
+         whole("young_below", &P::young_below, "leaves", 0, 2000000,
+               "With fewer leaves it is a young tree: it has a leader, is slender and leafy far down, and its "
+               "twigs don't hang; 0: never.",
+               "Halle, Oldeman and Tomlinson 1978, Tropical Trees and Forests")});
 }
 
 std::vector<ParameterRow> crown_rows() {

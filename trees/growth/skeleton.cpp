@@ -3,6 +3,7 @@
 #include "common/services/random.h"
 #include "trees/growth/directions.h"
 #include "trees/growth/streams.h"
+#include "trees/growth/young_tree.h"
 
 #include <algorithm>
 #include <cmath>
@@ -50,6 +51,8 @@ glm::vec3 turned_down(const glm::vec3& direction, float angle) {
 
 /// Nothing hangs lower than this share of the tree's height.
 constexpr float lowest_share = 0.025f;
+/// On a small tree twigs are too short to bend by their weight: sag is counted by this length at least.
+constexpr float least_sagging_m = 0.5f;
 /// A hanging shoot's length over the longest that it could have, on average.
 constexpr double mean_hanging_share = 0.75;
 
@@ -142,6 +145,21 @@ class SkeletonBuilder {
         shoots_on_.assign(nodes_.size(), 0);
         for (std::size_t i = 0; i < where.size(); ++i)
             shoots_on_[where[i]] = shares[i];
+        if (youth(p_) > 0)
+            keep_leader();
+    }
+
+    /// A young tree's stem ends in a shoot: without one its top would be dropped. The twig that has most gives it.
+    void keep_leader() {
+        std::size_t top = 0;
+        for (std::size_t i = 0; i < nodes_.size(); ++i)
+            if (nodes_[i].axis == 0)
+                top = i;
+        const auto giver = std::max_element(shoots_on_.begin(), shoots_on_.end());
+        if (shoots_on_[top] > 0 || *giver == 0)
+            return;
+        --*giver;
+        ++shoots_on_[top];
     }
 
     /// Twigs that get less light than the species can live on bear no shoots: their wood is dropped. The one with most
@@ -163,7 +181,7 @@ class SkeletonBuilder {
         weights[brightest] = std::max(weights[brightest], 0.4);
     }
 
-    /// Thin wood bends down under its load, more the farther it is from thick wood.
+    /// Thin wood bends down under its load, more the farther it is from thick wood; the leader stands.
     void sag() {
         if (p_.twig_sag <= 0)
             return;
@@ -180,7 +198,12 @@ class SkeletonBuilder {
             const float thinness =
                 std::clamp(1 - radius(std::int32_t(i)) / float(p_.shoot_radius) / thin_below, 0.f, 1.f);
             thin_m[i] = thin_m[parent] + thinness * length;
-            const float angle = radians(p_.twig_sag) * thin_m[i] / (0.1f * height_m_);
+            if (nodes_[i].axis == 0) {
+                thin_m[i] = 0;
+                bent[i] = bent[parent] + step;
+                continue;
+            }
+            const float angle = radians(p_.twig_sag) * thin_m[i] / std::max(0.1f * height_m_, least_sagging_m);
             glm::vec3 direction = turned_down(unit_or(step, {0, 1, 0}), angle);
             if (angle > 0 && bent[parent].y + length * direction.y < lowest_share * height_m_) // along the ground
                 direction = unit_or({direction.x, 0, direction.z}, {1, 0, 0});

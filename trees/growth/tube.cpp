@@ -231,6 +231,38 @@ Joint joint_on(const std::vector<Ring>& parent, const glm::vec3& start) {
     return joint;
 }
 
+/// Where the line left out a knot, several of its nodes have the same nearest place, or change their order: one of
+/// them is enough. Nodes at which branches begin stay.
+void remove_knots(std::vector<Branch::Node>& nodes, const std::vector<glm::vec3>& forks) {
+    const auto is_fork = [&](std::size_t n) {
+        return std::find(forks.begin(), forks.end(), nodes[n].position) != forks.end();
+    };
+    const auto erase = [&](std::size_t n) { nodes.erase(nodes.begin() + std::ptrdiff_t(n)); };
+    for (std::size_t n = 1; n < nodes.size() && nodes.size() > 2;) {
+        const glm::vec3 before = nodes[n].position - nodes[n - 1].position;
+        if (glm::length(before) < 1e-6f) {
+            const bool keep_this = n > 1 && (n + 1 == nodes.size() || is_fork(n));
+            erase(keep_this ? n - 1 : n);
+            n = std::max<std::size_t>(1, n - 1);
+            continue;
+        }
+        const glm::vec3 after = n + 1 < nodes.size() ? nodes[n + 1].position - nodes[n].position : before;
+        if (glm::dot(before, after) >= -0.17f * glm::length(before) * glm::length(after)) {
+            ++n;
+        } else if (!is_fork(n)) {
+            erase(n);
+            n = std::max<std::size_t>(1, n - 1);
+        } else if (n > 1 && !is_fork(n - 1)) {
+            erase(n - 1);
+            --n;
+        } else if (n + 2 < nodes.size() && !is_fork(n + 1)) {
+            erase(n + 1);
+        } else {
+            ++n;
+        }
+    }
+}
+
 } // namespace
 
 std::vector<Tube> make_tubes(const Skeleton& skeleton, const GrowthParameters& parameters) {
@@ -252,6 +284,12 @@ void move_to_centre_lines(Skeleton& skeleton, const std::vector<Tube>& tubes) {
         if (branch.parent >= 0)
             branch.nodes[0].position = tubes[i].joint.centre;
     }
+    std::vector<std::vector<glm::vec3>> forks(skeleton.branches.size());
+    for (std::size_t i = 0; i < tubes.size(); ++i)
+        if (skeleton.branches[i].parent >= 0)
+            forks[std::size_t(skeleton.branches[i].parent)].push_back(tubes[i].joint.centre);
+    for (std::size_t i = 0; i < tubes.size(); ++i)
+        remove_knots(skeleton.branches[i].nodes, forks[i]);
 }
 
 } // namespace kokage

@@ -54,7 +54,7 @@ double mean_branching_angle(const Tree& tree) {
         const glm::vec3 axis = parent[at + 1].position - parent[at - 1].position,
                         out = branch.nodes[2].position - branch.nodes[0].position;
         const float lengths = glm::length(axis) * glm::length(out);
-        if (!(lengths > 0)) // nodes that bark's centre lines have moved to one place
+        if (!(lengths > 0)) // a step back to where the one before began
             continue;
         sum += std::acos(std::clamp(glm::dot(axis, out) / lengths, -1.f, 1.f)) * 180 / kPi;
         ++count;

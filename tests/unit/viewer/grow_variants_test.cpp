@@ -33,7 +33,7 @@ TEST(GrowVariants, WritesATreeForEverySeedAndListsThem) {
         const Json& tree = listed["trees"][i];
         EXPECT_EQ(tree["seed"], 3 + i);
         EXPECT_EQ(tree["leaves"], 60);
-        EXPECT_GT(tree["height_m"], 0.01) << "low: of so few leaves, most hang near the ground";
+        EXPECT_GT(tree["height_m"], 0.3);
         EXPECT_EQ(std::filesystem::file_size(folder / ("trees/" + std::string(tree["file"]))), tree["bytes"]);
     }
     ASSERT_EQ(run_kokage({"grow", "birch", "--leaves", "60", "--seed", "4", "-o", "alone.glb"}, folder.path()).status,
