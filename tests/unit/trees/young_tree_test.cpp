@@ -56,8 +56,9 @@ TEST(YoungTrees, OfAllSpeciesStandUprightAndAreAsHighAsTheirLeavesAsk) {
 
                 const auto& stem = tree.skeleton.branches[0].nodes;
                 EXPECT_GE(stem.back().position.y, bound.least_leader * wood_top) << what;
-                if (bound.leaves <= 100) // later a stem may dissolve in limbs
+                if (bound.leaves <= 100) { // later a stem may dissolve in limbs
                     EXPECT_LT(std::hypot(stem.back().position.x, stem.back().position.z), 0.2 * wood_top) << what;
+                }
                 mean_height[bound.leaves] += height / 3;
                 for (std::size_t i = 1; i < stem.size() && bound.leaves <= 100; ++i) {
                     const glm::vec3 step = stem[i].position - stem[i - 1].position;
