@@ -84,7 +84,9 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
 /// level that 93 % stay below beyond 1.1, only 0.35 of the excess (in stops) is given, so that skies keep their colour
 /// and trees against the light don't become silhouettes. What is brighter than that level, or 4.5 stops darker
 /// (background, deep shade), is not in the mean. Pixels of the `subject` (as render_picture gives it; may be null) have
-/// at least half of the say in the mean, so that a slender tree is not lost against the sky.
+/// at least half of the say in the mean, so that a slender tree is not lost against the sky; where such a subject is
+/// pale (a bare birch) and the level stays below 1.1, half of that room (in stops) is used, so that the sky is not
+/// dull.
 float automatic_exposure_stops(const Image& radiance, const Image* subject = nullptr);
 
 /// Display-ready sRGB (as 0..1 floats) from linear radiance: exposure (automatic_exposure_stops if empty), then the

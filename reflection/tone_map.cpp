@@ -17,6 +17,8 @@ constexpr float kBrightShare = 0.93f; ///< of the metered picture that must stay
 constexpr float kHighlight = 1.1f;    ///< … what the curve shows as a light grey of 0.93
 constexpr double kYield =
     0.35; ///< against the light, what is bright gives way by this share, so that the rest is no silhouette
+constexpr double kLift =
+    0.5; ///< where a slender subject leaves room below the highlight, so much of it is used: skies shine
 constexpr double kDeepStops = 4.5; ///< what is so much darker than that is background or deep shade: not metered
 constexpr float kLeast = 1e-30f, kMost = 1e30f;
 
@@ -108,7 +110,9 @@ float automatic_exposure_stops(const Image& radiance, const Image* subject) {
     }
     const double for_mean = std::log2(double(kMiddleGrey * kCompensation)) - sum / counted;
     const double for_bright = std::log2(double(kHighlight)) - bright;
-    return float(for_mean <= for_bright ? for_mean : for_bright + kYield * (for_mean - for_bright));
+    if (for_mean <= for_bright) // a pale bare tree would leave the sky dull
+        return float(gain > 1 ? for_mean + kLift * (for_bright - for_mean) : for_mean);
+    return float(for_bright + kYield * (for_mean - for_bright));
 }
 
 Image tone_map(const Image& radiance, std::optional<float> exposure_stops, const Image* subject) {

@@ -171,11 +171,12 @@ BarkPattern::Point BarkPattern::pine(glm::vec2 uv) const {
     const glm::vec3 papery = (0.72f + 0.35f * (flake_height - 0.4f) + 0.25f * (grain - 0.5f)) *
                              glm::mix(glm::vec3(1.f, 0.50f, 0.20f), glm::vec3(0.95f, 0.60f, 0.34f), flake_tone);
     // Plates, themselves layered.
-    const TilingCell plate = tiling_cells(bent.x * 5, bent.y * 3, 5, 3, 96);
-    const float gap = plate.second - plate.nearest, on_plate = smooth_step(0.05f, 0.22f, gap);
+    const glm::vec2 torn = uv + glm::vec2(0.06f, 0.16f) * glm::vec2(noise(uv, 6, 6, 91), noise(uv, 7, 4, 99));
+    const TilingCell plate = tiling_cells(torn.x * 7, torn.y * 4, 7, 4, 96);
+    const float gap = plate.second - plate.nearest, on_plate = smooth_step(0.02f, 0.15f, gap);
     const float layers = std::floor(4 * (0.6f * noise(uv, 14, 9, 97) + 0.4f * flake_height)) / 4;
     const float plate_height = on_plate * (0.55f + 0.25f * plate.value + 0.2f * layers);
-    const glm::vec3 brown = (0.16f + 0.62f * plate_height + 0.18f * (grain - 0.5f)) *
+    const glm::vec3 brown = (0.32f + 0.46f * plate_height + 0.18f * (grain - 0.5f)) *
                             glm::mix(glm::vec3(1.f, 0.66f, 0.47f), glm::vec3(1.f, 0.84f, 0.70f), layers);
     const float old = smooth_step(0.25f, 0.75f, age_ + 0.5f * (noise(uv, 4, 4, 98) - 0.5f));
     return {glm::mix(0.5f + 0.15f * flake_height, plate_height, old), glm::mix(papery, 0.8f * brown, old)};

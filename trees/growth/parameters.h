@@ -67,6 +67,7 @@ struct GrowthParameters {
     int needles = 60;
     BarkKind bark = BarkKind::oak;
     Season season = Season::summer;
+    double bare_twigs = 3;
 };
 
 struct ParameterDescription {

@@ -9,6 +9,8 @@ std::vector<ParameterRow> look_rows() {
                "Colour of the leaves; in winter all but conifers stand bare, with the same wood. Blossom: a cherry's "
                "leaves are clusters of flowers, other trees stand in their spring leaf.",
                "Archetti et al. 2009, Trends in Ecology and Evolution 24:166: autumn colours"),
+        real("bare_twigs", &P::bare_twigs, "", 0, 20,
+             "Fine side twigs on every shoot, which show when the tree is bare and are drawn only then."),
         choice("leaf_shape", &P::leaf_shape, leaf_kind_names(),
                "Whose leaves: a blade with its outline, or of conifers a spray, a piece of twig with its needles, "
                "which counts as one leaf.",

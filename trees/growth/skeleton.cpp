@@ -2,6 +2,7 @@
 
 #include "common/services/random.h"
 #include "trees/growth/directions.h"
+#include "trees/growth/leaf_shape.h"
 #include "trees/growth/streams.h"
 #include "trees/growth/young_tree.h"
 
@@ -53,6 +54,8 @@ glm::vec3 turned_down(const glm::vec3& direction, float angle) {
 constexpr float lowest_share = 0.025f;
 /// On a small tree twigs are too short to bend by their weight: sag is counted by this length at least.
 constexpr float least_sagging_m = 0.5f;
+/// Wood up to so many shoot radii thick bears the fine twigs of a bare tree.
+constexpr float bearing_stoutness = 6;
 /// A hanging shoot's length over the longest that it could have, on average.
 constexpr double mean_hanging_share = 0.75;
 
@@ -112,6 +115,8 @@ class SkeletonBuilder {
             pending.insert(pending.end(), forks.rbegin(), forks.rend());
         }
         order_side_shoots();
+        if (is_bare(p_))
+            add_bare_twigs();
         share_leaves();
         return std::move(result_);
     }
@@ -342,6 +347,57 @@ class SkeletonBuilder {
             result_.shoots.back().branch = std::int32_t(result_.skeleton.branches.size());
             result_.skeleton.branches.push_back(std::move(branch));
         }
+    }
+
+    /// Side twigs of shoots and thin wood, which leaves hide: what makes a bare crown a haze instead of a rake. A
+    /// hanging shoot has as many more as it is longer, and they hang.
+    void add_bare_twigs() {
+        const std::size_t branches = result_.skeleton.branches.size();
+        for (std::size_t b = 0; b < branches; ++b) {
+            Random random(p_.seed, streams::of(streams::shoot, b + (1ull << 42)));
+            for (std::size_t n = 1; n + 1 < result_.skeleton.branches[b].nodes.size(); ++n) {
+                const float stoutness = result_.skeleton.branches[b].nodes[n].radius_m / float(p_.shoot_radius);
+                const int twigs = stoutness > 1 && stoutness < bearing_stoutness
+                                      ? int(0.5 * p_.bare_twigs + double(random.uniform()))
+                                      : 0;
+                for (int k = 0; k < twigs; ++k)
+                    add_bare_twig(std::int32_t(b), n, k, random);
+            }
+        }
+        for (std::size_t s = 0; s < result_.shoots.size(); ++s) {
+            const Shoot shoot = result_.shoots[s];
+            Random random(p_.seed, streams::of(streams::shoot, s + (1ull << 41)));
+            const double wanted =
+                p_.bare_twigs * std::max(1.0, double(shoot_lengths_[s]) / (2 * p_.shoot_length)) + random.uniform();
+            const std::size_t steps =
+                result_.skeleton.branches[std::size_t(shoot.branch)].nodes.size() - 1 - shoot.first_node;
+            for (int k = 0; k + 1 <= int(wanted); ++k) {
+                const std::size_t node =
+                    shoot.first_node + std::min(steps - 1, std::size_t(random.uniform() * float(steps)));
+                add_bare_twig(shoot.branch, node, k, random);
+            }
+        }
+    }
+
+    void add_bare_twig(std::int32_t bearer, std::size_t node, int k, Random& random) {
+        const Branch& bearing = result_.skeleton.branches[std::size_t(bearer)];
+        const glm::vec3 from = bearing.nodes[node].position;
+        const glm::vec3 along = unit_or(bearing.nodes[node + 1].position - from, {0, 1, 0});
+        const float angle = radians(p_.shoot_angle) * random.uniform(0.6f, 1.3f);
+        glm::vec3 direction = tilted(
+            along, angle, shoot_azimuth(along, std::int32_t(node), std::uint32_t(k)) + random.uniform(-0.7f, 0.7f));
+        const float length = float(p_.shoot_length) * random.uniform(0.5f, 1.8f),
+                    radius_m = std::min(0.5f * float(p_.shoot_radius), 0.9f * bearing.nodes[node].radius_m);
+        Branch twig{bearer, bearing.order + 1, {{from, radius_m}}};
+        glm::vec3 position = from;
+        for (const float share : {0.8f, 0.5f}) {
+            direction = unit_or(direction + 0.25f * random_direction(random) +
+                                    glm::vec3(0, p_.shoot_hang > 0 ? -0.5f : float(p_.shoot_up), 0),
+                                direction);
+            position = above_ground(position + 0.5f * length * direction);
+            twig.nodes.push_back({position, share * radius_m});
+        }
+        result_.skeleton.branches.push_back(std::move(twig));
     }
 
     void share_leaves() {

@@ -35,7 +35,8 @@ GrowthParameters at_its_age(const GrowthParameters& parameters) {
     if (young <= 0)
         return p;
     const Blend blend(young);
-    p.leaf_area_index *= std::pow(2.4, -young); // few leaves stand apart
+    // Few leaves stand apart; a leaf area as dense as in a grown column of cypress takes years.
+    p.leaf_area_index *= std::pow(std::min(1 / 2.4, 6 / p.leaf_area_index), young);
     blend.at_least(p.height_to_width, 1.6);
     blend.at_most(p.height_to_width, 4.5);
     blend.at_most(p.crown_base, 0.15);

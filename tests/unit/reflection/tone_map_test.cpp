@@ -105,5 +105,15 @@ TEST(ToneMap, ASlenderSubjectIsNotLostAgainstTheSky) {
     EXPECT_THROW(automatic_exposure_stops(picture, &other_size), InputError);
 }
 
+TEST(ToneMap, APaleSlenderSubjectDoesNotLeaveTheSkyDull) {
+    const Image picture = filled(40, 40, glm::vec3(0.5f));
+    Image subject(40, 40, 1);
+    for (int y = 0; y < 40; ++y)
+        subject.at(20, y)[0] = 1.f;
+    const float metered = automatic_exposure_stops(picture), shown = automatic_exposure_stops(picture, &subject);
+    EXPECT_NEAR(shown, 0.5f * (metered + std::log2(1.1f / 0.5f)), 1e-3f) << "half of the room below the highlight";
+    EXPECT_LT(0.5f * std::exp2(shown), 1.1f);
+}
+
 } // namespace
 } // namespace kokage
