@@ -388,15 +388,11 @@ class SkeletonBuilder {
             along, angle, shoot_azimuth(along, std::int32_t(node), std::uint32_t(k)) + random.uniform(-0.7f, 0.7f));
         const float length = float(p_.shoot_length) * random.uniform(0.5f, 1.8f),
                     radius_m = std::min(0.5f * float(p_.shoot_radius), 0.9f * bearing.nodes[node].radius_m);
+        // Straight: one cone, for there are several times as many as all other branches.
+        direction =
+            unit_or(direction + glm::vec3(0, p_.shoot_hang > 0 ? -0.8f : 1.5f * float(p_.shoot_up), 0), direction);
         Branch twig{bearer, bearing.order + 1, {{from, radius_m}}};
-        glm::vec3 position = from;
-        for (const float share : {0.8f, 0.5f}) {
-            direction = unit_or(direction + 0.25f * random_direction(random) +
-                                    glm::vec3(0, p_.shoot_hang > 0 ? -0.5f : float(p_.shoot_up), 0),
-                                direction);
-            position = above_ground(position + 0.5f * length * direction);
-            twig.nodes.push_back({position, share * radius_m});
-        }
+        twig.nodes.push_back({above_ground(from + length * direction), 0.5f * radius_m});
         result_.skeleton.branches.push_back(std::move(twig));
     }
 
