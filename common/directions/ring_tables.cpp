@@ -10,8 +10,6 @@
 namespace kokage {
 namespace {
 
-constexpr int kPad = RingCoefficients::kPad;
-
 /// P_lm of one order m on all northern rings: row by row, [pair][l - m].
 class OrderTable {
   public:
@@ -117,18 +115,33 @@ RingTables::RingTables(int bands, int rings, std::span<const double> polar, std:
         throw std::invalid_argument("RingTables: bands, rings and angles don't agree");
     const RingCoefficients shape(bands);
     std::size_t size = 0;
-    for (int m = 0; m < bands; ++m) {
-        for (int parity = 0; parity < 2; ++parity) {
-            first_.push_back(size);
-            size += order == Order::along_bands ? std::size_t(pairs()) * std::size_t(shape.padded(m, parity))
-                                                : std::size_t(shape.count(m, parity)) * std::size_t(padded_pairs());
-        }
+    first_.resize(std::size_t(batches() * bands * 2));
+    for (int batch = 0; batch < batches(); ++batch) {
         // P_lm is below 1e-12 of its largest value where l sin is so far below m.
-        int first = 0;
-        const double reach = (m - 6.5 * std::cbrt(double(m)) - 12) / bands;
-        while (first < pairs() && std::sin(polar[std::size_t(first)]) < reach)
-            ++first;
-        first_pair_.push_back(first / kPad * kPad);
+        const double sine = std::sin(polar[std::size_t(std::min((batch + 1) * kBatch, pairs()) - 1)]);
+        int orders = 1;
+        while (orders < bands && sine * bands >= orders - 6.5 * std::cbrt(double(orders)) - 12)
+            ++orders;
+        orders_.push_back(orders);
+    }
+    auto place = [&](int batch, int m, int parity) {
+        first_[std::size_t((batch * bands + m) * 2 + parity)] = size;
+        const int here = std::min(kBatch, pairs() - batch * kBatch);
+        size += m >= orders_[std::size_t(batch)] ? 0
+                : order == Order::along_bands    ? std::size_t(here) * std::size_t(shape.padded(m, parity))
+                                                 : std::size_t(shape.count(m, parity)) * std::size_t(kBatch);
+    };
+    // In the order in which they are gone through.
+    if (order == Order::along_bands) {
+        for (int m = 0; m < bands; ++m)
+            for (int parity = 0; parity < 2; ++parity)
+                for (int batch = 0; batch < batches(); ++batch)
+                    place(batch, m, parity);
+    } else {
+        for (int batch = 0; batch < batches(); ++batch)
+            for (int m = 0; m < bands; ++m)
+                for (int parity = 0; parity < 2; ++parity)
+                    place(batch, m, parity);
     }
     values_.resize(size);
     parallel_blocks(std::size_t(bands), 4, [&](std::size_t begin, std::size_t end) {
@@ -137,24 +150,23 @@ RingTables::RingTables(int bands, int rings, std::span<const double> polar, std:
             functions.fill(m);
             if (spline)
                 functions.make_spline();
-            for (int parity = 0; parity < 2; ++parity) {
-                float* values = values_.data() + first_[std::size_t(2 * m + parity)];
-                const auto count = std::size_t(shape.count(m, parity)), padded = std::size_t(shape.padded(m, parity)),
-                           across = std::size_t(padded_pairs());
-                for (std::size_t pair = 0; pair < std::size_t(pairs()); ++pair) {
-                    const double* row = functions.row(pair) + parity;
-                    if (order == Order::along_bands) {
-                        for (std::size_t i = 0; i < padded; ++i)
-                            values[pair * padded + i] = i < count ? float(row[2 * i]) : 0.f;
-                    } else {
-                        for (std::size_t i = 0; i < count; ++i)
-                            values[i * across + pair] = float(row[2 * i]);
+            for (int batch = 0; batch < batches(); ++batch)
+                for (int parity = 0; parity < 2 && m < orders(batch); ++parity) {
+                    float* values = values_.data() + first_[std::size_t((batch * bands + m) * 2 + parity)];
+                    const auto count = std::size_t(shape.count(m, parity)),
+                               padded = std::size_t(shape.padded(m, parity));
+                    for (int lane = 0; lane < kBatch; ++lane) {
+                        const int pair = batch * kBatch + lane;
+                        const double* row = pair < pairs() ? functions.row(std::size_t(pair)) + parity : nullptr;
+                        if (order == Order::along_bands) {
+                            for (std::size_t i = 0; row && i < padded; ++i)
+                                values[std::size_t(lane) * padded + i] = i < count ? float(row[2 * i]) : 0.f;
+                        } else {
+                            for (std::size_t i = 0; i < count; ++i)
+                                values[i * std::size_t(kBatch) + std::size_t(lane)] = row ? float(row[2 * i]) : 0.f;
+                        }
                     }
                 }
-                if (order == Order::along_rings)
-                    for (std::size_t i = 0; i < count; ++i)
-                        std::fill(values + i * across + std::size_t(pairs()), values + (i + 1) * across, 0.f);
-            }
         }
     });
 }

@@ -101,12 +101,14 @@ void RingAnalysis::transform(const Image& image, float scale, RingCoefficients& 
             const float re = float(turn.real()), im = float(turn.imag());
             for (int parity = 0; parity < 2; ++parity) {
                 const auto padded = std::size_t(coefficients.padded(int(m), parity));
-                const auto first = std::size_t(tables_.first_pair(int(m)));
+                int batch = 0;
+                while (tables_.orders(batch) <= int(m) && batch + 1 < tables_.batches())
+                    ++batch;
+                const auto first = std::size_t(batch) * kLanes;
                 float* values = coefficients.values(int(m), parity);
-                ring_product(tables_.table(int(m), parity) + first * padded, padded, pairs - std::min(first, pairs),
-                             padded,
-                             {spectra.data() + ((m * 2 + std::size_t(parity)) * pairs + first) * kColumns, kColumns, 1},
-                             values, padded);
+                ring_analysis_product(tables_.table(batch, int(m), parity), pairs - first, padded,
+                                      spectra.data() + ((m * 2 + std::size_t(parity)) * pairs + first) * kColumns,
+                                      values);
                 for (std::size_t i = 0; i < 3 * padded; ++i) {
                     const float a = values[i], b = values[3 * padded + i];
                     values[i] = a * re - b * im;
@@ -159,36 +161,34 @@ RingSynthesis::RingSynthesis(int bands, int rings, int columns)
 namespace {
 
 /// Even and odd parts on 16 pairs of rings -> elements m and columns - m of the sequences north + i south.
-void store_order(const float* even, const float* odd, std::size_t stride, std::size_t channel, float* positive,
-                 float* negative) {
-    const float *even_re = even + channel * stride, *even_im = even + (channel + 3) * stride;
-    const float *odd_re = odd + channel * stride, *odd_im = odd + (channel + 3) * stride;
+void store_order(const float* even, const float* odd, float factor, float* positive, float* negative) {
+    const float *even_im = even + 3 * kLanes, *odd_im = odd + 3 * kLanes;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
-        const float north_re = even_re[lane] + odd_re[lane], south_re = even_re[lane] - odd_re[lane];
-        const float north_im = even_im[lane] + odd_im[lane], south_im = even_im[lane] - odd_im[lane];
+        const float north_re = factor * (even[lane] + odd[lane]), south_re = factor * (even[lane] - odd[lane]);
+        const float north_im = factor * (even_im[lane] + odd_im[lane]),
+                    south_im = factor * (even_im[lane] - odd_im[lane]);
         positive[lane] = north_re - south_im;
         positive[kLanes + lane] = north_im + south_re;
-        if (negative) {
-            negative[lane] = north_re + south_im;
-            negative[kLanes + lane] = south_re - north_im;
-        }
+        negative[lane] = north_re + south_im;
+        negative[kLanes + lane] = south_re - north_im;
     }
 }
 
 /// The finished sequences of 16 pairs of rings into the grid's rows.
-void store_rings(const std::array<std::span<float>, 3>& channels, std::size_t first_pair, std::size_t pairs,
-                 RingGrid& grid) {
-    for (std::size_t lane = 0; lane < kLanes && first_pair + lane < pairs; ++lane) {
-        const int north = int(first_pair + lane), south = grid.rings - 1 - north;
-        glm::vec4 *north_row = &grid.at(north, 0), *south_row = &grid.at(south, 0);
-        for (std::size_t x = 0; x < std::size_t(grid.columns); ++x) {
-            const std::size_t at = x * kElement + lane;
-            north_row[x] = glm::vec4(channels[0][at], channels[1][at], channels[2][at], 0.f);
-            if (south > north)
-                south_row[x] =
-                    glm::vec4(channels[0][at + kLanes], channels[1][at + kLanes], channels[2][at + kLanes], 0.f);
-        }
+void store_rings(const std::array<std::span<float>, 3>& channels, std::size_t first_pair, RingGrid& grid) {
+    const std::size_t pairs = std::size_t(grid.rings + 1) / 2, here = std::min(kLanes, pairs - first_pair);
+    std::array<float*, kLanes> north{}, south{};
+    for (std::size_t lane = 0; lane < here; ++lane) {
+        north[lane] = &grid.at(int(first_pair + lane), 0).x;
+        south[lane] = &grid.at(grid.rings - 1 - int(first_pair + lane), 0).x;
     }
+    auto store = [&](std::size_t part, std::size_t rings, float* const* rows) {
+        interleave_rings(channels[0].data() + part, channels[1].data() + part, channels[2].data() + part,
+                         std::size_t(grid.columns), rings, rows);
+    };
+    // The equator is the last of an odd number of rings' pairs and has no southern ring: its northern one comes last.
+    store(kLanes, here, south.data());
+    store(0, here, north.data());
 }
 
 void fill_guards(RingGrid& grid) {
@@ -209,64 +209,69 @@ void fill_guards(RingGrid& grid) {
 
 } // namespace
 
-void RingSynthesis::transform(const RingCoefficients& coefficients, std::span<const double> zonal, float scale,
-                              RingGrid& grid) const {
-    const int bands = std::min({int(zonal.size()), coefficients.bands(), tables_.bands()});
-    if (zonal.size() > std::size_t(tables_.bands()) || grid.rings != rings() || grid.columns != columns())
-        throw std::invalid_argument("RingSynthesis: more bands or another grid than it was made for");
-    const auto padded_pairs = std::size_t(tables_.padded_pairs()), columns = std::size_t(fft_.length());
-    const std::size_t batches = padded_pairs / kLanes, orders = std::size_t(bands);
-    // [batch][channel][column], ready for the transform along azimuth
-    UninitializedVector<float> spectra(batches * 3 * columns * kElement);
-    auto element = [&](std::size_t batch, std::size_t channel, std::size_t column) {
-        return spectra.data() + ((batch * 3 + channel) * columns + column) * kElement;
+void RingSynthesis::transform(const RingCoefficients& coefficients, std::span<const std::vector<double>> zonals,
+                              float scale, std::span<RingGrid> grids) const {
+    if (zonals.size() != grids.size() || grids.size() > kMostGrids || coefficients.bands() < bands())
+        throw std::invalid_argument("RingSynthesis: too many grids or too few bands");
+    // [grid][parity of l][l / 2]: the l of one order and parity stand together.
+    const std::size_t half = std::size_t(bands() + 1) / 2;
+    std::vector<float> by_parity(grids.size() * 2 * half);
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        if (zonals[g].size() > std::size_t(bands()) || grids[g].rings != rings() || grids[g].columns != columns())
+            throw std::invalid_argument("RingSynthesis: more bands or another grid than it was made for");
+        for (std::size_t l = 0; l < zonals[g].size(); ++l)
+            by_parity[(g * 2 + l % 2) * half + l / 2] = float(zonals[g][l]);
+    }
+    std::size_t bands_used = 1;
+    for (const std::vector<double>& zonal : zonals)
+        bands_used = std::max(bands_used, zonal.size());
+    parallel_blocks(std::size_t(tables_.batches()), 1, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t batch = begin; batch < end; ++batch)
+            transform_batch(coefficients, by_parity, bands_used, scale, int(batch), grids);
+    });
+    for (RingGrid& grid : grids)
+        fill_guards(grid);
+}
+
+void RingSynthesis::transform_batch(const RingCoefficients& coefficients, std::span<const float> zonals,
+                                    std::size_t bands_used, float scale, int batch, std::span<RingGrid> grids) const {
+    const auto columns = std::size_t(fft_.length()), orders = std::min(std::size_t(tables_.orders(batch)), bands_used);
+    const std::size_t half = std::size_t(bands() + 1) / 2;
+    // [grid][channel][column], ready for the transform along azimuth
+    UninitializedVector<float> spectra((grids.size() * 3 + 3) * columns * kElement);
+    auto element = [&](std::size_t grid, std::size_t channel, std::size_t column) {
+        return spectra.data() + ((grid * 3 + channel) * columns + column) * kElement;
     };
-    parallel_blocks(orders, kOrdersABlock, [&](std::size_t begin, std::size_t end) {
-        std::vector<float> columns_of_l, parts(2 * kColumns * padded_pairs);
-        for (std::size_t m = begin; m < end; ++m) {
-            const auto first = std::size_t(tables_.first_pair(int(m)));
-            for (int parity = 0; parity < 2; ++parity) {
-                const std::size_t count =
-                    m + std::size_t(parity) < orders ? (orders - m - std::size_t(parity) + 1) / 2 : 0;
-                const auto padded = std::size_t(coefficients.padded(int(m), parity));
-                const float* values = coefficients.values(int(m), parity);
-                columns_of_l.resize(kColumns * count);
-                for (std::size_t c = 0; c < kColumns; ++c)
-                    for (std::size_t i = 0; i < count; ++i)
-                        columns_of_l[c * count + i] = values[c * padded + i] * scale * order_factors_[m] *
-                                                      float(zonal[m + std::size_t(parity) + 2 * i]);
-                float* part = parts.data() + std::size_t(parity) * kColumns * padded_pairs;
-                ring_product(tables_.table(int(m), parity) + first, padded_pairs, count, padded_pairs - first,
-                             {columns_of_l.data(), 1, count}, part + first, padded_pairs);
-            }
-            for (std::size_t batch = 0; batch < batches; ++batch)
-                for (std::size_t channel = 0; channel < 3; ++channel) {
-                    float* positive = element(batch, channel, m);
-                    float* negative = m > 0 ? element(batch, channel, columns - m) : nullptr;
-                    if (batch * kLanes < first) {
-                        std::fill_n(positive, kElement, 0.f);
-                        std::fill_n(negative, kElement, 0.f);
-                    } else {
-                        const float* even = parts.data() + batch * kLanes;
-                        store_order(even, even + kColumns * padded_pairs, padded_pairs, channel, positive, negative);
-                    }
-                }
+    alignas(64) float parts[2][kMostGrids * kColumns * kLanes];
+    for (std::size_t m = 0; m < orders; ++m) {
+        for (std::size_t parity = 0; parity < 2; ++parity) {
+            const std::size_t first = m + parity;
+            std::array<const float*, kMostGrids> zonal{};
+            for (std::size_t g = 0; g < grids.size(); ++g)
+                zonal[g] = zonals.data() + (g * 2 + first % 2) * half + first / 2;
+            const std::size_t rows = first < bands_used ? (bands_used - first + 1) / 2 : 0;
+            ring_synthesis_product(
+                tables_.table(batch, int(m), int(parity)), rows, coefficients.values(int(m), int(parity)),
+                std::size_t(coefficients.padded(int(m), int(parity))), zonal.data(), grids.size(), parts[parity]);
         }
-    });
-    parallel_blocks(batches, 1, [&](std::size_t begin, std::size_t end) {
-        UninitializedVector<float> scratch(3 * fft_.floats());
-        for (std::size_t batch = begin; batch < end; ++batch) {
-            std::array<std::span<float>, 3> transformed;
+        alignas(64) float unused[kElement];
+        for (std::size_t g = 0; g < grids.size(); ++g)
             for (std::size_t channel = 0; channel < 3; ++channel) {
-                std::fill(element(batch, channel, orders), element(batch, channel, columns - orders + 1), 0.f);
-                transformed[channel] =
-                    fft_.backward(std::span(element(batch, channel, 0), fft_.floats()),
-                                  std::span(scratch).subspan(channel * fft_.floats(), fft_.floats()));
+                const std::size_t part = (g * kColumns + channel) * kLanes;
+                store_order(parts[0] + part, parts[1] + part, scale * order_factors_[m], element(g, channel, m),
+                            m > 0 ? element(g, channel, columns - m) : unused);
             }
-            store_rings(transformed, batch * kLanes, std::size_t(tables_.pairs()), grid);
+    }
+    const std::span<float> scratch = std::span<float>(spectra).subspan(grids.size() * 3 * fft_.floats());
+    for (std::size_t g = 0; g < grids.size(); ++g) {
+        std::array<std::span<float>, 3> transformed;
+        for (std::size_t channel = 0; channel < 3; ++channel) {
+            std::fill(element(g, channel, orders), element(g, channel, columns - orders + 1), 0.f);
+            transformed[channel] = fft_.backward(std::span<float>(element(g, channel, 0), fft_.floats()),
+                                                 scratch.subspan(channel * fft_.floats(), fft_.floats()));
         }
-    });
-    fill_guards(grid);
+        store_rings(transformed, std::size_t(batch) * kLanes, grids[g]);
+    }
 }
 
 } // namespace kokage

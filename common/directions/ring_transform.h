@@ -46,6 +46,7 @@ class RingCoefficients {
 class RingTables {
   public:
     enum class Order { along_bands, along_rings }; ///< what stands together: for analysis, for synthesis
+    static constexpr int kBatch = int(BatchFft::kLanes);
     /// `polar`: polar angles of the northern rings, ascending, the equator (pi/2) last if `rings` is odd. `weights`:
     /// what each ring's functions are multiplied by; empty = 1. `spline`: the functions' coefficients of kRingSpline
     /// along the meridian instead of their values; the rings must then be (j + 1/2) pi / rings.
@@ -54,17 +55,20 @@ class RingTables {
     int bands() const { return bands_; }
     int rings() const { return rings_; }
     int pairs() const { return (rings_ + 1) / 2; } ///< of a northern and a southern ring; the equator is its own
-    int padded_pairs() const { return (pairs() + 15) / 16 * 16; }
-    /// along_bands: [pair][l of that parity, padded to 16]; along_rings: [l of that parity][padded_pairs()].
-    const float* table(int m, int parity) const { return values_.data() + first_[std::size_t(2 * m + parity)]; }
-    /// Pairs before this one are so near the pole that order m vanishes there; a multiple of 16.
-    int first_pair(int m) const { return first_pair_[std::size_t(m)]; }
+    int batches() const { return (pairs() + kBatch - 1) / kBatch; } ///< of kBatch pairs, the last one padded
+    /// Orders that don't vanish on a batch: fewer near the pole.
+    int orders(int batch) const { return orders_[std::size_t(batch)]; }
+    /// Order::along_bands: [pair of the batch][l of that parity, padded to 16], and the next batch's pairs follow;
+    /// Order::along_rings: [l of that parity][pair of the batch]. m < orders(batch).
+    const float* table(int batch, int m, int parity) const {
+        return values_.data() + first_[std::size_t((batch * bands_ + m) * 2 + parity)];
+    }
     std::size_t bytes() const { return values_.size() * sizeof(float); }
 
   private:
     int bands_, rings_;
+    std::vector<int> orders_;
     std::vector<std::size_t> first_;
-    std::vector<int> first_pair_;
     UninitializedVector<float> values_;
 };
 
@@ -114,7 +118,7 @@ struct RingGrid {
     glm::vec3 lookup(const glm::dvec3& direction) const;
 };
 
-/// From coefficients to a grid.
+/// From coefficients to grids of one size.
 class RingSynthesis {
   public:
     /// columns even and >= 2 bands - 1.
@@ -122,13 +126,18 @@ class RingSynthesis {
     int bands() const { return tables_.bands(); }
     int rings() const { return tables_.rings(); }
     int columns() const { return fft_.length(); }
-    /// f convolved with a zonal function, whose zonal coefficients (zonal.h) are `zonal`: at most bands() of them.
-    /// Everything is multiplied by `scale`.
-    void transform(const RingCoefficients& coefficients, std::span<const double> zonal, float scale,
-                   RingGrid& grid) const;
+    static constexpr std::size_t kMostGrids = 3;
+    /// Up to kMostGrids grids at once, each f convolved with another zonal function: `zonals` are their zonal
+    /// coefficients (zonal.h), at most bands() of them; fewer take less time. Everything is multiplied by `scale`. The
+    /// same bits with any number of threads.
+    void transform(const RingCoefficients& coefficients, std::span<const std::vector<double>> zonals, float scale,
+                   std::span<RingGrid> grids) const;
     std::size_t bytes() const { return tables_.bytes(); }
 
   private:
+    void transform_batch(const RingCoefficients& coefficients, std::span<const float> zonals, std::size_t bands_used,
+                         float scale, int batch, std::span<RingGrid> grids) const;
+
     RingTables tables_;
     BatchFft fft_;
     std::vector<float> order_factors_; ///< of the spline along azimuth, and 1/2 for the two sides of m > 0

@@ -78,8 +78,14 @@ class SpectralBaker final : public Baker {
     std::vector<TexelPlace> places_;
     std::vector<std::uint32_t> direct_; ///< texels that are summed pixel by pixel
     std::optional<RingAnalysis> analysis_;
-    std::vector<RingSynthesis> syntheses_;
-    std::vector<RingGrid> grids_;
+    /// Neighbouring shells with grids of one size.
+    struct ShellGroup {
+        std::size_t first, count;
+        RingSynthesis synthesis;
+    };
+    std::vector<ShellGroup> groups_;
+    std::vector<std::vector<double>> zonals_; ///< of each shell
+    std::vector<RingGrid> grids_;             ///< of each shell
     LobeLights lights_;
     std::vector<float> factors_; ///< of each texel: 1 over the sum of its weights, 0 where it is summed pixel by pixel
     double least_spread_ = 1;
@@ -95,12 +101,22 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
         analysis_.emplace(width, height, plan_.bands());
     progress.advance(1);
     std::size_t bytes = analysis_ ? analysis_->bytes() : 0;
-    for (const SpectralShell& shell : plan_.shells()) {
+    const std::vector<SpectralShell>& shells = plan_.shells();
+    for (std::size_t begin = 0, end = 0; begin < shells.size(); begin = end) {
         progress.throw_if_stopped();
-        syntheses_.emplace_back(int(shell.zonal.size()), shell.rings, 2 * shell.rings);
-        grids_.emplace_back(shell.rings, 2 * shell.rings);
-        bytes += syntheses_.back().bytes() + grids_.back().cells.size() * sizeof(glm::vec4);
-        progress.advance(1);
+        std::size_t bands = 0;
+        for (;
+             end < shells.size() && end - begin < RingSynthesis::kMostGrids && shells[end].rings == shells[begin].rings;
+             ++end) {
+            bands = std::max(bands, shells[end].zonal.size());
+            zonals_.push_back(shells[end].zonal);
+            grids_.emplace_back(shells[end].rings, 2 * shells[end].rings);
+            bytes += grids_.back().cells.size() * sizeof(glm::vec4);
+        }
+        groups_.push_back(
+            {begin, end - begin, RingSynthesis(int(bands), shells[begin].rings, 2 * shells[begin].rings)});
+        bytes += groups_.back().synthesis.bytes();
+        progress.advance(end - begin);
     }
     place_texels();
     normalize();
@@ -154,9 +170,10 @@ void SpectralBaker::filter_smooth(const Image& image, float most, std::span<glm:
     analysis_->transform(image, scale, coefficients);
     report.stages.push_back({"harmonics of the image", watch.cpu(), watch.wall()});
     watch.restart();
-    for (std::size_t i = 0; i < syntheses_.size(); ++i) {
+    for (const ShellGroup& group : groups_) {
         progress.throw_if_stopped();
-        syntheses_[i].transform(coefficients, plan_.shells()[i].zonal, 1, grids_[i]);
+        group.synthesis.transform(coefficients, std::span(zonals_).subspan(group.first, group.count), 1,
+                                  std::span(grids_).subspan(group.first, group.count));
     }
     report.stages.push_back({"filtering on rings", watch.cpu(), watch.wall()});
     watch.restart();

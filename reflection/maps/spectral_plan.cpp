@@ -1,4 +1,5 @@
 #include "reflection/maps/spectral_plan.h"
+#include "common/directions/ring_transform.h"
 #include "common/types.h"
 #include "reflection/maps/shell_map.h"
 
@@ -10,7 +11,8 @@ namespace kokage {
 namespace {
 
 constexpr int kMostBands = 512;
-constexpr double kLeastPixels = 0.7; ///< standard width of a lobe in harmonics
+constexpr double kSharedRings = 1.35; ///< grids up to so much finer than needed
+constexpr double kLeastPixels = 0.7;  ///< standard width of a lobe in harmonics
 constexpr double kLargestOverRms = 5;
 // Shares of the tolerance, chosen by measuring each part's error: what the bands leave out rings all over the sphere,
 // and is seen in the dark; what grids blur stays beside the bright.
@@ -27,11 +29,17 @@ bool is_fast(int n) {
     return n == 1;
 }
 
-std::vector<float> distinct(const std::vector<float>& values) {
-    std::vector<float> sorted = values;
-    std::sort(sorted.begin(), sorted.end());
-    sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
-    return sorted;
+/// Ascending; if there are more than `most`, only so many that it shows.
+std::vector<float> distinct(const std::vector<float>& values, std::size_t most) {
+    std::vector<float> found;
+    for (const float value : values) {
+        if (found.size() > most)
+            break;
+        const auto place = std::lower_bound(found.begin(), found.end(), value);
+        if (place == found.end() || *place != value)
+            found.insert(place, value);
+    }
+    return found;
 }
 
 } // namespace
@@ -92,7 +100,6 @@ SpectralPlan::SpectralPlan(const TexelLayout& layout, int image_width, int image
     : kind_(layout.kind), tolerance_(tolerance),
       noise_(2.0 / 12 / (double(image_width) * image_height)), // of noise that is even over [0, 1]
       most_bands_(kMostBands) {
-    const std::vector<float> parameters = distinct(layout.parameters);
     // The narrowest lobe that the bands suffice for: the width at which they no longer do, by bisection. (Very wide
     // Phong lobes need many bands too, for the edge of their half sphere; those are cut off.)
     auto suffices = [&](double width) {
@@ -107,24 +114,48 @@ SpectralPlan::SpectralPlan(const TexelLayout& layout, int image_width, int image
     }
     // Nor one that is not wider than the pixels are apart.
     const double pixel = std::max(kPiDouble / image_height, 2 * kPiDouble / image_width);
-    least_width_ = std::max(wide, 2 * std::log(kLeastPixels * pixel));
+    narrowest_ = float(lobe_of_spread(kind_, std::exp(std::max(wide, 2 * std::log(kLeastPixels * pixel)))).parameter);
+    add_shells(layout.parameters);
+    share_grids();
+}
+
+/// Neighbours whose grids would be almost as large get grids of one size: one table serves them.
+void SpectralPlan::share_grids() {
+    for (std::size_t end = shells_.size(); end > 0;) {
+        std::size_t begin = end - 1;
+        const int rings = shells_[begin].rings;
+        while (begin > 0 && end - begin < RingSynthesis::kMostGrids && shells_[begin - 1].rings <= rings &&
+               shells_[begin - 1].rings * kSharedRings >= rings)
+            shells_[--begin].rings = rings;
+        end = begin;
+    }
+}
+
+void SpectralPlan::add_shells(const std::vector<float>& parameters) {
+    float least = std::numeric_limits<float>::max(), most = 0;
+    for (const float parameter : parameters)
+        if (!is_direct(parameter)) {
+            least = std::min(least, parameter);
+            most = std::max(most, parameter);
+        }
+    if (least > most)
+        return; // every texel is direct
+    widest_ = std::max(lobe_width(least), lobe_width(most));
+    const double range = widest_ - std::min(lobe_width(least), lobe_width(most));
+    // Cubic interpolation: the error grows with the fourth power of the step.
+    const double step =
+        std::clamp(kStepAtTolerance * std::pow(tolerance_ / kToleranceOfStep, 0.25), 0.03, std::log(2.0));
+    const auto intervals = std::size_t(std::max(3.0, std::ceil(range / step)));
     std::vector<float> spectral;
     for (const float parameter : parameters)
         if (!is_direct(parameter))
             spectral.push_back(parameter);
-    if (spectral.empty())
-        return;
-    std::sort(spectral.begin(), spectral.end(), [&](float a, float b) { return lobe_width(a) > lobe_width(b); });
-    widest_ = lobe_width(spectral.front());
-    const double range = widest_ - lobe_width(spectral.back());
-    // Cubic interpolation: the error grows with the fourth power of the step.
-    const double shell_step =
-        std::clamp(kStepAtTolerance * std::pow(tolerance / kToleranceOfStep, 0.25), 0.03, std::log(2.0));
-    const auto intervals = std::size_t(std::max(3.0, std::ceil(range / shell_step)));
-    if (spectral.size() <= intervals + 1) {
-        for (const float parameter : spectral)
+    parameters_ = distinct(spectral, intervals + 1);
+    if (parameters_.size() <= intervals + 1) {
+        std::sort(parameters_.begin(), parameters_.end(),
+                  [&](float a, float b) { return lobe_width(a) > lobe_width(b); });
+        for (const float parameter : parameters_)
             add_shell({kind_, double(parameter)});
-        parameters_ = spectral;
         return;
     }
     shells_a_texel_ = ShellMix::kMost;

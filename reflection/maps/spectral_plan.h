@@ -14,7 +14,7 @@ namespace kokage {
 struct SpectralShell {
     Lobe lobe;
     std::vector<double> zonal; ///< its coefficients; their number is the bands that it needs
-    int rings = 0;             ///< of its grid; twice as many columns
+    int rings = 0; ///< of its grid; twice as many columns; up to RingSynthesis::kMostGrids neighbours share it
 };
 
 /// Up to four neighbouring shells and their weights.
@@ -38,7 +38,9 @@ class SpectralPlan {
     int bands() const; ///< the most of any shell
     /// A lobe so narrow that the image's pixels show through it, or that needs more bands than there is room for, is
     /// summed pixel by pixel.
-    bool is_direct(float parameter) const { return lobe_width(parameter) < least_width_; }
+    bool is_direct(float parameter) const {
+        return kind_ == LobeKind::phong ? parameter > narrowest_ : parameter < narrowest_;
+    }
     ShellMix mix(float parameter) const;
 
   private:
@@ -46,13 +48,16 @@ class SpectralPlan {
     int bands_needed(const Lobe& lobe) const;
     int rings_needed(std::span<const double> zonal) const;
     void add_shell(const Lobe& lobe);
+    void add_shells(const std::vector<float>& parameters);
+    void share_grids();
 
     LobeKind kind_;
     double tolerance_, noise_;
     int most_bands_;
-    double least_width_ = 0, widest_ = 0, step_ = 1;
+    float narrowest_ = 0; ///< parameter of the narrowest lobe in harmonics
+    double widest_ = 0, step_ = 1;
     std::size_t shells_a_texel_ = 1;
-    std::vector<float> parameters_; ///< of the shells, where every texel's lobe is one of them; ascending in width
+    std::vector<float> parameters_; ///< of the shells, where every texel's lobe is one of them
     std::vector<SpectralShell> shells_;
 };
 

@@ -67,23 +67,48 @@ TEST(BatchFft, IsTheSumThatDefinesIt) {
     }
 }
 
-TEST(RingProduct, IsTheSumThatDefinesIt) {
+TEST(RingProduct, AnalysisIsTheSumThatDefinesIt) {
     Random random(1, 2);
     for (const std::size_t count : {16u, 32u, 48u, 64u, 112u}) {
-        const std::size_t stride = count + 16, rows = 7;
-        std::vector<float> table(rows * stride), values(rows * 12), result(6 * count);
+        const std::size_t rows = 7;
+        std::vector<float> table(rows * count), values(rows * 6), result(6 * count);
         for (float& v : table)
             v = random.uniform();
         for (float& v : values)
             v = random.uniform();
-        ring_product(table.data(), stride, rows, count, {values.data(), 12, 2}, result.data(), count);
+        ring_analysis_product(table.data(), rows, count, values.data(), result.data());
         for (std::size_t c = 0; c < 6; ++c)
             for (std::size_t i = 0; i < count; ++i) {
                 double sum = 0;
                 for (std::size_t k = 0; k < rows; ++k)
-                    sum += double(table[k * stride + i]) * double(values[k * 12 + c * 2]);
+                    sum += double(table[k * count + i]) * double(values[k * 6 + c]);
                 ASSERT_NEAR(result[c * count + i], sum, 2e-6) << count << " " << c << " " << i;
             }
+    }
+}
+
+TEST(RingProduct, SynthesisIsTheSumThatDefinesIt) {
+    Random random(1, 3);
+    for (std::size_t functions = 1; functions <= RingSynthesis::kMostGrids; ++functions) {
+        const std::size_t rows = 9, column = 11;
+        std::vector<float> table(rows * 16), coefficients(6 * column), zonal(functions * rows),
+            result(functions * 6 * 16);
+        for (std::vector<float>* values : {&table, &coefficients, &zonal})
+            for (float& v : *values)
+                v = random.uniform();
+        std::vector<const float*> zonals;
+        for (std::size_t f = 0; f < functions; ++f)
+            zonals.push_back(zonal.data() + f * rows);
+        ring_synthesis_product(table.data(), rows, coefficients.data(), column, zonals.data(), functions,
+                               result.data());
+        for (std::size_t f = 0; f < functions; ++f)
+            for (std::size_t c = 0; c < 6; ++c)
+                for (std::size_t i = 0; i < 16; ++i) {
+                    double sum = 0;
+                    for (std::size_t k = 0; k < rows; ++k)
+                        sum += double(table[k * 16 + i]) * double(zonals[f][k]) * double(coefficients[c * column + k]);
+                    ASSERT_NEAR(result[(f * 6 + c) * 16 + i], sum, 2e-6) << f << " " << c << " " << i;
+                }
     }
 }
 
@@ -136,8 +161,9 @@ TEST(RingSynthesis, IsTheSeriesOnTheRingsAndBetweenThem) {
     };
     for (const int rings : {50, 75, 200}) {
         const RingSynthesis synthesis(bands, rings, 2 * rings);
-        RingGrid grid(rings, 2 * rings);
-        synthesis.transform(coefficients, zonal, 3, grid);
+        std::vector<RingGrid> grids(2, RingGrid(rings, 2 * rings));
+        synthesis.transform(coefficients, std::vector<std::vector<double>>{{1.0, 0.5}, zonal}, 3, grids);
+        const RingGrid& grid = grids[1];
         double on_rings = 0, between = 0;
         for (int y = 0; y < rings; y += 3)
             for (int x = 0; x < 2 * rings; x += 5) {
@@ -168,8 +194,9 @@ TEST(RingTransform, SameBitsWithAnyNumberOfThreads) {
         set_thread_count(threads);
         RingCoefficients coefficients(bands);
         RingAnalysis(96, 48, bands).transform(image, 1, coefficients);
-        RingGrid grid(80, 128);
-        RingSynthesis(bands, 80, 128).transform(coefficients, phong_lobe(bands, 100), 1, grid);
+        std::vector<RingGrid> grids(1, RingGrid(80, 128));
+        const RingGrid& grid = grids[0];
+        RingSynthesis(bands, 80, 128).transform(coefficients, std::vector<std::vector<double>>{phong_lobe(bands, 100)}, 1, grids);
         set_thread_count(0);
         std::vector<glm::vec4> cells;
         for (int y = 0; y < 80; ++y)

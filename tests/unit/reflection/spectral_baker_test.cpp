@@ -264,7 +264,8 @@ TEST(ReadTexels, IsTheSplineThere) {
     for (const int rings : {12, 20, 24, 30}) {
         grids.emplace_back(rings, 2 * rings);
         RingSynthesis(bands, rings, 2 * rings)
-            .transform(coefficients, std::vector<double>(std::size_t(bands), 1.0), 1, grids.back());
+            .transform(coefficients, std::vector<std::vector<double>>{std::vector<double>(std::size_t(bands), 1.0)}, 1,
+                       std::span(&grids.back(), 1));
     }
     const TexelLayout layout = scattered(LobeKind::phong, 1, 2, 500);
     Random random(3);
