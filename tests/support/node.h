@@ -21,6 +21,13 @@ inline std::string node_modules_with(const std::string& package) {
     return there ? folder.string() : "";
 }
 
+/// Whether pages can be run in a browser (tests/validate/in_browser.js).
+inline bool browser_is_there() {
+    return std::system(("node -e \"process.exit(require('" + std::string(KOKAGE_TESTS_FOLDER) +
+                        "/validate/in_browser.js').findChromium() ? 0 : 1)\"")
+                           .c_str()) == 0;
+}
+
 /// Runs a script of tests/validate with arguments, `input` (a file; empty = none) as its standard input, and reads the
 /// JSON that it prints. The test fails if the script does.
 inline nlohmann::json run_node(const std::string& script, const std::vector<std::string>& arguments,

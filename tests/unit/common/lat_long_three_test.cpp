@@ -34,12 +34,6 @@ std::vector<glm::dvec3> all_around() {
     return directions;
 }
 
-bool browser_is_there() {
-    return std::system(("node -e \"process.exit(require('" + std::string(KOKAGE_TESTS_FOLDER) +
-                        "/validate/in_browser.js').findChromium() ? 0 : 1)\"")
-                           .c_str()) == 0;
-}
-
 glm::vec3 vector_of(const nlohmann::json& json) {
     return {float(json[0]), float(json[1]), float(json[2])};
 }

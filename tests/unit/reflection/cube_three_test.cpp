@@ -9,12 +9,6 @@
 namespace kokage {
 namespace {
 
-bool browser_is_there() {
-    return std::system(("node -e \"process.exit(require('" + std::string(KOKAGE_TESTS_FOLDER) +
-                        "/validate/in_browser.js').findChromium() ? 0 : 1)\"")
-                           .c_str()) == 0;
-}
-
 /// Texel noise on top of smooth colours, clamped to [0,1]: any shift, mirroring or blur shows.
 PrefilteredCube lively_cube() {
     PrefilteredCube cube = smooth_cube({.size = 64, .parameters = {0, 0.2, 0.5, 1}});
