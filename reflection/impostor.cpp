@@ -187,6 +187,13 @@ ViewFrame frame_of(const PatchScene& scene, float azimuth) {
     return frame;
 }
 
+double coverage(const Image& alpha) {
+    double sum = 0;
+    for (const float share : alpha.pixels)
+        sum += double(share);
+    return sum / double(alpha.pixels.size());
+}
+
 CapturedView capture_view(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
                           const ViewFrame& frame, int width, int height, int samples, Progress& progress) {
     if (width < 1 || height < 1 || samples < 1)

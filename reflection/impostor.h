@@ -24,6 +24,9 @@ struct CapturedView {
     Image normal; ///< mean unit normal of the seen side, world space, 3 channels; likewise filled
 };
 
+/// Mean of an alpha channel: the share of a view that shows the scene.
+double coverage(const Image& alpha);
+
 /// The solved radiance of the scene (no light is tested again) as the frame shows it, `samples` rays a pixel. The
 /// scene's ground is left out. The same bits with any number of threads. Throws InputError for sizes below 1, Stopped.
 CapturedView capture_view(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,

@@ -7,6 +7,7 @@
 #include "trees/tree_extras.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <tiny_gltf.h>
@@ -37,11 +38,21 @@ bool holds_light(const GltfDocument& document) {
     return false;
 }
 
-bool is_obj(const std::filesystem::path& path) {
+std::string lower_case_extension(const std::filesystem::path& path) {
     std::string extension = path.extension().string();
     std::transform(extension.begin(), extension.end(), extension.begin(),
                    [](unsigned char c) { return char(std::tolower(c)); });
-    return extension == ".obj";
+    return extension;
+}
+
+/// Files of trees that other programs know.
+void refuse_other_formats(const std::filesystem::path& path, const std::string& extension) {
+    constexpr std::array<std::string_view, 22> known = {
+        ".fbx", ".blend", ".3ds", ".max", ".dae", ".stl", ".ply", ".usd", ".usdc", ".usda", ".usdz",
+        ".abc", ".c4d",   ".mb",  ".ma",  ".spm", ".srt", ".st",  ".xml", ".x3d",  ".lwo",  ".zip"};
+    if (std::find(known.begin(), known.end(), extension) != known.end())
+        throw InputError(path.string() + ": files that end in " + extension +
+                         " can't be read; export the tree as .glb, .gltf or .obj");
 }
 
 } // namespace
@@ -52,7 +63,9 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
     if (!(options.leaf_size >= 0) || !std::isfinite(options.leaf_size))
         throw InputError("the leaf size is " + std::to_string(options.leaf_size) +
                          " m; it must be 0 (found by itself) or above");
-    if (is_obj(path))
+    const std::string extension = lower_case_extension(path);
+    refuse_other_formats(path, extension);
+    if (extension == ".obj")
         return tree_from_scene(read_obj_scene(path, progress), path.string(), options, progress);
     const GltfDocument document = GltfDocument::read(path, progress);
     const bool shaded = holds_light(document);

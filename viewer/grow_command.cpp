@@ -121,7 +121,7 @@ Command grow_command(CLI::App& program) {
         ->type_name("NAME|FILE.json")
         ->capture_default_str();
     app->add_option("--seed", options->seed, "Which individual: the same seed gives the same tree (otherwise 1)")
-        ->check(whole_number())
+        ->check(whole_number(std::uint64_t(1) << 53)) // as the parameter of that name
         ->type_name("N")
         ->group("Tree");
     app->add_option(

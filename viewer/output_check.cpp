@@ -24,7 +24,7 @@ void check_output(const fs::path& path, std::string_view what, std::initializer_
             known += (known.empty() ? "" : ", ") + std::string(one);
         throw InputError(std::string(what) + " can't be '" + path.string() + "': " +
                          (ending.empty() ? "the name has no ending" : "the ending " + ending + " is not known") +
-                         "; give one of " + known);
+                         (endings.size() == 1 ? "; give " : "; give one of ") + known);
     }
     const OutputFile probe(path); // creates a temporary file there and takes it away again
 }

@@ -129,7 +129,10 @@ int run_program(int argc, const char* const* argv) {
     } catch (const CLI::ParseError& error) {
         if (const auto name = unknown_command(program))
             return complain(no_such_command(*name, commands), kInputError);
-        return complain(std::string(error.what()) + " ('kokage --help' tells more)", kInputError);
+        const std::vector<CLI::App*> asked = program.get_subcommands();
+        return complain(std::string(error.what()) + " ('kokage " +
+                            (asked.empty() ? "" : asked.front()->get_name() + " ") + "--help' tells more)",
+                        kInputError);
     }
     for (const Command& command : commands)
         if (command.app->parsed())

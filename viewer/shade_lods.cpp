@@ -71,14 +71,6 @@ Image relative_error(const Seen& seen, const Seen& full) {
     return error;
 }
 
-/// Share of the picture that shows the tree.
-double coverage(const Seen& seen) {
-    double sum = 0;
-    for (const float alpha : seen.alpha.pixels)
-        sum += double(alpha);
-    return sum / double(seen.alpha.pixels.size());
-}
-
 /// Mean luminance of what is seen of the tree itself.
 double tree_luminance(const Seen& seen, const glm::vec3& background) {
     double sum = 0, weight = 0;
@@ -207,7 +199,7 @@ class LodWriter {
         double near = 0, afar = 0, covered = 0, radiance = 0;
         for (std::size_t v = 0; v < views.size(); ++v) {
             const Seen& full = views_.empty() ? views[v] : views_[0][v];
-            covered += coverage(views[v]) / double(views.size());
+            covered += coverage(views[v].alpha) / double(views.size());
             radiance += tree_luminance(views[v], background_) / double(views.size());
             near += mean_error(views[v], full) / double(views.size());
             afar += mean_error({halved(views[v].picture, halvings), halved(views[v].alpha, halvings)},

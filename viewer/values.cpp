@@ -65,13 +65,13 @@ Size size_from(std::string_view text, std::string_view what) {
     return size;
 }
 
-CLI::Validator whole_number() {
+CLI::Validator whole_number(std::uint64_t most) {
     return CLI::Validator(
-        [](const std::string& text) {
+        [most](const std::string& text) {
             std::uint64_t value = 0;
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-            const bool good = error == std::errc() && end == text.data() + text.size();
-            return good ? "" : "'" + text + "' is not a whole number from 0 to 18446744073709551615";
+            const bool good = error == std::errc() && end == text.data() + text.size() && value <= most;
+            return good ? "" : "'" + text + "' is not a whole number from 0 to " + std::to_string(most);
         },
         "");
 }

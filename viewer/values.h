@@ -3,6 +3,8 @@
 #include "common/types.h"
 
 #include <CLI/CLI.hpp>
+#include <cstdint>
+#include <limits>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,7 +25,7 @@ struct Size {
 Size size_from(std::string_view text, std::string_view what);
 
 /// A check for options that take a whole number from 0: without it CLI11 reads -1 as 2^64 - 1.
-CLI::Validator whole_number();
+CLI::Validator whole_number(std::uint64_t most = std::numeric_limits<std::uint64_t>::max());
 
 /// "3.42 s", "12 ms", "2 min 05 s".
 std::string duration_text(double seconds);

@@ -59,6 +59,14 @@ SpraySegment needle(float y, float side, float angle, float length, float width,
     return in_plane({0, y}, glm::vec2(0, y) + std::max(scale, 0.02f) * direction, half_width);
 }
 
+/// Needles stand left and right of the axis in turn. Where the i-th of `count` does: 0 at the foot, 1 at the tip.
+struct NeedlePlace {
+    float t, side;
+};
+NeedlePlace needle_place(int i, int count) {
+    return {(float(i) + 0.5f) / float(count), i % 2 == 0 ? 1.f : -1.f};
+}
+
 } // namespace
 
 Spray pine_spray(int needles, float width) {
@@ -69,8 +77,8 @@ Spray pine_spray(int needles, float width) {
     std::vector<SpraySegment> half = {axis_to(std::max(0.1f, 1 - 0.75f * length), 0.016f)};
     for (int i = 0; i < pairs; ++i) {
         Random random(41, std::uint64_t(i));
-        const float t = (float(i) + 0.5f) / float(pairs), y = (1 - 0.8f * length) * (0.12f + 0.88f * t);
-        const float side = i % 2 == 0 ? 1.f : -1.f;
+        const auto [t, side] = needle_place(i, pairs);
+        const float y = (1 - 0.8f * length) * (0.12f + 0.88f * t);
         const float angle = radians(62) - radians(40) * t * t + random.uniform(-0.12f, 0.12f), spread = 0.10f;
         for (const float away : {-spread, spread}) {
             const float own = length * random.uniform(0.88f, 1.f);
@@ -88,8 +96,8 @@ Spray spruce_spray(int needles, float width) {
     std::vector<SpraySegment> half = {axis_to(std::max(0.1f, 1 - 0.8f * length), 0.013f)};
     for (int i = 0; i < count; ++i) {
         Random random(43, std::uint64_t(i));
-        const float t = (float(i) + 0.5f) / float(count), y = (1 - 0.85f * length) * t;
-        const float side = i % 2 == 0 ? 1.f : -1.f;
+        const auto [t, side] = needle_place(i, count);
+        const float y = (1 - 0.85f * length) * t;
         const float angle = radians(64) - radians(30) * t * t * t + random.uniform(-0.15f, 0.15f);
         const float own =
             length * (0.75f + 0.25f * std::sin(kPi * std::min(1.f, 0.2f + 0.8f * t))) * random.uniform(0.9f, 1.f);

@@ -33,13 +33,6 @@ ShadedScene lit(const PatchScene& patches, const glm::vec3& front, const glm::ve
     return scene;
 }
 
-double mean_alpha(const CapturedView& view) {
-    double sum = 0;
-    for (const float alpha : view.alpha.pixels)
-        sum += double(alpha);
-    return sum / double(view.alpha.pixels.size());
-}
-
 TEST(CaptureView, ShowsTheSideThatLooksAtTheViewer) {
     const PatchScene patches = square();
     const ShadedScene scene = lit(patches, {1, 0, 0}, {0, 0, 1});
@@ -51,7 +44,7 @@ TEST(CaptureView, ShowsTheSideThatLooksAtTheViewer) {
     for (const bool behind : {false, true}) {
         frame.towards_viewer = {0, 0, behind ? -1.f : 1.f};
         const CapturedView view = capture_view(scene, queries, environment, frame, 32, 32, 4, silent_progress());
-        EXPECT_NEAR(mean_alpha(view), 0.25, 1e-6) << "1 m2 of 4";
+        EXPECT_NEAR(coverage(view.alpha), 0.25, 1e-6) << "1 m2 of 4";
         EXPECT_EQ(pixel(view.color, 16, 16), behind ? glm::vec3(0, 0, 1) : glm::vec3(1, 0, 0));
         EXPECT_EQ(pixel(view.color, 0, 0), pixel(view.color, 16, 16)) << "empty texels take their neighbours' colour";
         EXPECT_NEAR(pixel(view.normal, 16, 16).z, behind ? -1 : 1, 1e-5) << "of the seen side";
@@ -99,7 +92,7 @@ TEST(Impostor, FacesShowTheSceneFromTheirSide) {
         for (std::size_t i = 0; i < full.alpha.pixels.size(); ++i)
             difference +=
                 std::abs(double(full.alpha.pixels[i] - card.alpha.pixels[i])) / double(full.alpha.pixels.size());
-        EXPECT_LT(difference, 0.25 * mean_alpha(full)) << "at its edges alone";
+        EXPECT_LT(difference, 0.25 * coverage(full.alpha)) << "at its edges alone";
         for (std::size_t i = 0; i < card.alpha.pixels.size(); ++i)
             EXPECT_NEAR(card.color.pixels[3 * i + 1], 0.25, 0.008);
     }
@@ -120,9 +113,9 @@ TEST(Impostor, CardsTogetherCoverAboutWhatTheSceneDoesDenseOrSparse) {
         double full = 0, covered = 0;
         for (int side = 0; side < 9; ++side) {
             const ViewFrame frame = frame_of(patches, 0.4f + 0.7f * float(side));
-            full += mean_alpha(capture_view(scene, queries, environment, frame, 64, 64, 4, silent_progress()));
-            covered +=
-                mean_alpha(capture_view(shown.shaded, card_queries, environment, frame, 64, 64, 4, silent_progress()));
+            full += coverage(capture_view(scene, queries, environment, frame, 64, 64, 4, silent_progress()).alpha);
+            covered += coverage(
+                capture_view(shown.shaded, card_queries, environment, frame, 64, 64, 4, silent_progress()).alpha);
         }
         EXPECT_NEAR(covered, full, 0.3 * full) << leaves;
     }
