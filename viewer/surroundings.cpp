@@ -41,14 +41,14 @@ Daylight daylight(const Surroundings& surroundings) {
     return result;
 }
 
-Environment gradient(const std::string& values) {
+Environment gradient(const std::string& values, const std::string& option) {
     if (values.empty())
         return gradient_environment({0.25f, 0.45f, 0.9f}, {0.8f, 0.85f, 0.9f}, {0.12f, 0.1f, 0.08f});
-    const std::vector<double> n = numbers_from(values, "--environment gradient");
+    const std::vector<double> n = numbers_from(values, option + " gradient");
     const bool in_range =
         std::all_of(n.begin(), n.end(), [](double x) { return x >= 0 && x <= double(kHighestRadiance); });
     if (n.size() != 9 || !in_range)
-        throw InputError("--environment gradient: '" + values +
+        throw InputError(option + " gradient: '" + values +
                          "' is not nine numbers from 0: red,green,blue of the zenith, of the horizon and of the nadir");
     const auto color = [&](std::size_t i) { return glm::vec3(n[i], n[i + 1], n[i + 2]); };
     return gradient_environment(color(0), color(3), color(6));
@@ -60,10 +60,10 @@ std::optional<Environment> made_environment(const Surroundings& surroundings) {
     if (surroundings.environment == "sky")
         return analytic_sky(daylight(surroundings));
     if (split_kind(surroundings.environment, "constant", values))
-        return constant_environment(values.empty() ? glm::vec3(1.f)
-                                                   : color_from(values, "--environment constant", kHighestRadiance));
+        return constant_environment(
+            values.empty() ? glm::vec3(1.f) : color_from(values, surroundings.option + " constant", kHighestRadiance));
     if (split_kind(surroundings.environment, "gradient", values))
-        return gradient(values);
+        return gradient(values, surroundings.option);
     return {};
 }
 
@@ -107,14 +107,7 @@ float foot_height(const Tree& tree) {
     return lowest == kNone ? 0.f : lowest;
 }
 
-void add_surroundings_options(CLI::App& app, Surroundings& s) {
-    app.add_option("--environment", s.environment,
-                   "What lights the tree: sky (daylight with sun), constant[:R,G,B], gradient[:nine numbers: zenith, "
-                   "horizon, nadir], "
-                   "or a lat-long image (.hdr, .exr, .png), twice as wide as high")
-        ->type_name("ENV")
-        ->capture_default_str()
-        ->group("Light");
+void add_light_options(CLI::App& app, Surroundings& s) {
     app.add_option("--sun", s.sun,
                    "Sky: where the sun stands, in degrees (otherwise 135,45); azimuth 0 is north (-Z), 90 east (+X). "
                    "Below the horizon the sky is that of sunset, dimmed: dusk, not a night with stars or moon")
@@ -124,7 +117,7 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
         ->type_name("T")
         ->group("Light");
     app.add_option("--light", s.lights,
-                   "A light more (what the ground hides is left out): sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  "
+                   "A light more (what a ground hides is left out): sun:AZ,EL,R,G,B  disc:AZ,EL,R,G,B,HALF_ANGLE  "
                    "directional:AZ,EL,R,G,B  "
                    "point:X,Y,Z,R,G,B; may be repeated. Angles in degrees, places in metres; R,G,B is the irradiance "
                    "on a surface that faces the light (point: at 1 m). sun is a disc of the sun's size, directional "
@@ -133,6 +126,17 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
         ->allow_extra_args(false)
         ->group("Light");
     app.add_flag("--strict", s.strict, "Images: refuse bad pixels instead of repairing them")->group("Light");
+}
+
+void add_surroundings_options(CLI::App& app, Surroundings& s) {
+    app.add_option("--environment", s.environment,
+                   "What lights the tree: sky (daylight with sun), constant[:R,G,B], gradient[:nine numbers: zenith, "
+                   "horizon, nadir], "
+                   "or a lat-long image (.hdr, .exr, .png), twice as wide as high")
+        ->type_name("ENV")
+        ->capture_default_str()
+        ->group("Light");
+    add_light_options(app, s);
     const auto ground = [&](const char* name, bool value, const char* what) {
         return app
             .add_flag_function(
@@ -163,9 +167,9 @@ void check_surroundings(const Surroundings& s) {
         return;
     std::error_code ignored;
     if (std::filesystem::is_directory(s.environment, ignored))
-        throw InputError("--environment: '" + s.environment + "' is a folder; give an image (.hdr, .exr, .png)");
+        throw InputError(s.option + ": '" + s.environment + "' is a folder; give an image (.hdr, .exr, .png)");
     if (!std::filesystem::exists(s.environment, ignored))
-        throw InputError("--environment: there is no file '" + s.environment +
+        throw InputError(s.option + ": there is no file '" + s.environment +
                          "'; give an image (.hdr, .exr, .png), or sky, constant or gradient");
 }
 
@@ -173,10 +177,11 @@ bool is_environment_image(const Surroundings& surroundings) {
     return !made_environment(surroundings);
 }
 
-Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report) {
+Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report, bool split) {
     std::optional<Environment> made = made_environment(s);
     EnvironmentLoading loading;
     loading.strict = s.strict;
+    loading.split = split;
     Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
     for (const std::string& light : s.lights)
         add_light(environment, light);

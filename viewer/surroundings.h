@@ -12,16 +12,19 @@
 namespace kokage {
 
 struct Surroundings {
-    std::string environment = "sky"; ///< sky, constant[:R,G,B], gradient[:9 numbers] or a file
-    std::string sun;                 ///< sky: "AZIMUTH,ELEVATION" in degrees; empty = the default place
-    std::optional<double> turbidity; ///< sky: haze
-    std::vector<std::string> lights; ///< as common/environment/light_description.h reads them
-    bool strict = false;             ///< images: refuse bad pixels
-    std::optional<bool> ground;      ///< empty: where the environment has no lower half
-    std::string ground_albedo;       ///< a colour; empty = dry grass
+    std::string option = "--environment"; ///< what the environment is called in messages
+    std::string environment = "sky";      ///< sky, constant[:R,G,B], gradient[:9 numbers] or a file
+    std::string sun;                      ///< sky: "AZIMUTH,ELEVATION" in degrees; empty = the default place
+    std::optional<double> turbidity;      ///< sky: haze
+    std::vector<std::string> lights;      ///< as common/environment/light_description.h reads them
+    bool strict = false;                  ///< images: refuse bad pixels
+    std::optional<bool> ground;           ///< empty: where the environment has no lower half
+    std::string ground_albedo;            ///< a colour; empty = dry grass
 };
 
 void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
+/// The part of them that shapes the light itself: --sun, --turbidity, --light, --strict.
+void add_light_options(CLI::App& app, Surroundings& surroundings);
 
 /// Throws InputError, before any work, for values that can't be.
 void check_surroundings(const Surroundings& surroundings);
@@ -30,8 +33,9 @@ void check_surroundings(const Surroundings& surroundings);
 bool is_environment_image(const Surroundings& surroundings);
 
 /// Builds or loads it, lights added. Point lights are placed relative to `origin`
-/// (Tree::origin), as all positions of a tree are.
-Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report);
+/// (Tree::origin), as all positions of a tree are. `split`: lights are split off images.
+Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report,
+                               bool split = true);
 
 /// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else the
 /// lowest bark at the foot of its stems (twigs may hang lower), without wood its lowest point.

@@ -4,13 +4,23 @@
 #include "reflection/maps/spectral_baker.h"
 #include "reflection/maps/table_baker.h"
 
+#include <algorithm>
 #include <string>
 
 namespace kokage {
 
 namespace {
 constexpr BakeMethod kMethods[] = {BakeMethod::spectral, BakeMethod::table, BakeMethod::brute_force};
-}
+
+class SameEverywhereBaker final : public Baker {
+    void bake(const Environment& surroundings, std::span<glm::vec3> filtered, WorkReport& report, Progress&) override {
+        const float* color = surroundings.remainder.at(0, 0);
+        std::fill(filtered.begin(), filtered.end(), glm::vec3(color[0], color[1], color[2]));
+        report.counts.push_back({"texels", filtered.size()});
+    }
+};
+
+} // namespace
 
 std::string_view bake_method_name(BakeMethod method) {
     switch (method) {
@@ -44,8 +54,23 @@ std::unique_ptr<Baker> make_baker(const TexelLayout& layout, int image_width, in
     case BakeMethod::spectral:
         break;
     }
-    return spectral_baker(layout, image_width, image_height,
-                          {.tolerance = settings.tolerance, .stored_setup = settings.stored_setup}, report, progress);
+    return spectral_baker(layout, image_width, image_height, {.tolerance = settings.tolerance, .stored_setup = {}},
+                          report, progress);
+}
+
+bool is_same_everywhere(const Environment& surroundings) {
+    const Image& image = surroundings.remainder;
+    if (!surroundings.distant_lights.empty())
+        return false;
+    for (std::size_t i = 0; i < image.pixels.size(); i += std::size_t(image.channels))
+        if (!std::equal(image.pixels.begin(), image.pixels.begin() + 3, image.pixels.begin() + std::ptrdiff_t(i)))
+            return false;
+    return true;
+}
+
+std::unique_ptr<Baker> same_everywhere_baker(WorkReport& report) {
+    report.skips.push_back({"all filtering", "the surroundings are the same everywhere", "the whole bake"});
+    return std::make_unique<SameEverywhereBaker>();
 }
 
 } // namespace kokage

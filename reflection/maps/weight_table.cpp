@@ -1,9 +1,11 @@
 // How a weight table is used: eq 14 of [R].
 #include "reflection/maps/weight_table.h"
+#include "common/services/error.h"
 #include "common/services/parallel.h"
 
 #include <algorithm>
 #include <stdexcept>
+#include <string>
 
 namespace kokage {
 
@@ -58,6 +60,16 @@ glm::vec3 sum_one_symmetry(std::span<const std::uint16_t> slots, std::span<const
 }
 
 } // namespace
+
+TableWeights table_weights_from_name(std::string_view name) {
+    for (const auto& [known, weights] :
+         {std::pair("matched", TableWeights::matched), std::pair("renormalised", TableWeights::renormalised),
+          std::pair("paper", TableWeights::paper)})
+        if (name == known)
+            return weights;
+    throw InputError("there are no weights called '" + std::string(name) +
+                     "'; there are: matched, renormalised, paper");
+}
 
 void WeightTable::filter(const DomeLight& light, std::span<glm::vec3> filtered, Progress& progress) const {
     if (filtered.size() != texels())

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string_view>
 #include <vector>
 
 namespace kokage {
@@ -30,6 +31,9 @@ enum class TableWeights {
     /// the light is lost.
     paper,
 };
+
+/// "matched", "renormalised", "paper"; throws InputError that lists them.
+TableWeights table_weights_from_name(std::string_view name);
 
 struct TableSettings {
     double threshold = 0.001; ///< th of eq 14, of the lobe's peak; in (0, 0.3)

@@ -1,0 +1,166 @@
+#include "common/directions/sphere_sets.h"
+#include "common/services/error.h"
+#include "reflection/maps/baked_map.h"
+#include "reflection/maps/brute_force_baker.h"
+#include "reflection/maps/cube_file.h"
+#include "reflection/maps/map_file.h"
+#include "tests/support/temporary_folder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace kokage {
+namespace {
+
+Environment stripes() {
+    Environment environment;
+    environment.remainder = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            for (int c = 0; c < 3; ++c)
+                environment.remainder.at(x, y)[c] = 0.5f + 0.5f * std::sin(0.1f * float(x * (c + 1) + y));
+    return environment;
+}
+
+std::unique_ptr<BakedMap> baked(const MapSettings& settings, const Environment& environment) {
+    std::unique_ptr<BakedMap> map = make_map(settings);
+    WorkReport report;
+    const auto baker = make_baker(map->layout(), environment.remainder.width, environment.remainder.height,
+                                  {.method = BakeMethod::brute_force}, report);
+    map->bake(environment, baker.get(), report);
+    return map;
+}
+
+double truth_error(const Environment& environment, const Lobe& lobe, const glm::vec3& direction,
+                   const glm::vec3& value) {
+    return glm::distance(glm::dvec3(value),
+                         filtered_by_brute_force(environment, lobe, glm::normalize(glm::dvec3(direction))));
+}
+
+TEST(BakedMap, ARangeOfShellsIsSmallerAndHoldsTheSameWithinIt) {
+    const TemporaryFolder folder;
+    MapSettings settings;
+    settings.smoothness = SmoothnessRange{0.15, 0.3};
+    const Environment environment = stripes();
+    const std::unique_ptr<BakedMap> map = baked(settings, environment);
+    const std::optional<WorkReport::Skip> saved = saved_by_range(settings, *map);
+    ASSERT_TRUE(saved);
+    EXPECT_NE(saved->saved.find("became"), std::string::npos);
+    EXPECT_FALSE(saved_by_range({}, *map));
+    EXPECT_LT(4 * map->bytes(), make_map({})->bytes());
+    WorkReport report;
+    map->write(folder / "m.exr", "stripes", report);
+    const ShellMap shells = std::get<ShellMap>(read_map(folder / "m.exr").map);
+    const RoughnessScale scale = scale_of(settings);
+    for (double smoothness : {0.15, 0.22, 0.3})
+        for (const glm::vec3 direction : {glm::vec3(1, 2, 3), glm::vec3(-3, 0.5f, 1), glm::vec3(0, -1, 0.1f)})
+            EXPECT_LT(truth_error(environment, {LobeKind::phong, scale.exponent(smoothness)}, direction,
+                                  shells.lookup(glm::normalize(direction), scale.exponent(smoothness))),
+                      0.02) // the stripes end at the seam, in a step
+                << smoothness;
+}
+
+TEST(BakedMap, ARangeOfACubeBakesTheVoxelsThatItsLookupsReadAndNoOthers) {
+    const TemporaryFolder folder;
+    MapSettings settings;
+    settings.container = MapContainer::voxel_cube;
+    settings.size = 32;
+    const Environment environment = stripes();
+    const std::unique_ptr<BakedMap> whole = baked(settings, environment);
+    settings.smoothness = SmoothnessRange{0.4, 0.5};
+    const std::unique_ptr<BakedMap> part = baked(settings, environment);
+    EXPECT_LT(2 * part->layout().size(), whole->layout().size());
+    WorkReport report;
+    whole->write(folder / "whole.exr", "", report);
+    part->write(folder / "part.exr", "", report);
+    const VoxelCube a = std::get<VoxelCube>(read_map(folder / "whole.exr").map);
+    const VoxelCube b = std::get<VoxelCube>(read_map(folder / "part.exr").map);
+    for (const glm::dvec3& d : fibonacci_sphere(500).directions)
+        for (float smoothness : {0.4f, 0.45f, 0.5f})
+            ASSERT_EQ(a.lookup(glm::vec3(d), smoothness), b.lookup(glm::vec3(d), smoothness));
+}
+
+TEST(BakedMap, CubeMapsHoldTheImageAndItsFilteredLevels) {
+    const TemporaryFolder folder;
+    MapSettings settings;
+    settings.container = MapContainer::cube_map;
+    settings.lobe = LobeKind::ggx;
+    settings.size = 64;
+    const Environment environment = stripes();
+    WorkReport report;
+    baked(settings, environment)->write(folder / "m.ktx2", "", report);
+    EXPECT_TRUE(report.warnings.empty());
+    const PrefilteredCube cube = read_ktx2(folder / "m.ktx2").cube;
+    ASSERT_EQ(cube.levels.size(), 3u);
+    EXPECT_TRUE(cube.levels[0].unfiltered);
+    EXPECT_EQ(cube.levels[1].parameter, 0.5);
+    const glm::dvec3 direction = cube_texel_direction(3, 5, 7, 32);
+    const glm::vec3 value = cube.levels[1].texels[(3 * 32 + 7) * 32 + 5];
+    EXPECT_LT(truth_error(environment, {LobeKind::ggx, 0.5}, glm::vec3(direction), value), 2e-3);
+
+    settings.size = 256;
+    settings.smoothness = SmoothnessRange{0.05, 0.2};
+    EXPECT_LT(make_map(settings)->bytes(), 64 * 64 * 6 * 8 * 2u) << "no larger than its lobes need";
+}
+
+TEST(BakedMap, SaysHowManyTexelsTheFormatCutsOff) {
+    const TemporaryFolder folder;
+    Environment environment = stripes();
+    for (float& value : environment.remainder.pixels)
+        value *= 1e6f;
+    for (const auto& [container, file] :
+         {std::pair(MapContainer::shells, "m.exr"), {MapContainer::cube_map, "m.dds"}}) {
+        MapSettings settings;
+        settings.container = container;
+        settings.size = container == MapContainer::cube_map ? 16 : 0;
+        settings.smoothness = SmoothnessRange{0.05, 0.1};
+        WorkReport report;
+        baked(settings, environment)->write(folder / file, "", report);
+        ASSERT_EQ(report.warnings.size(), 1u) << file;
+        EXPECT_NE(report.warnings[0].find("--format float"), std::string::npos);
+        settings.format = TexelFormat::float_rgb;
+        WorkReport of_floats;
+        baked(settings, environment)->write(folder / file, "", of_floats);
+        EXPECT_TRUE(of_floats.warnings.empty());
+    }
+}
+
+TEST(BakedMap, SurroundingsThatAreTheSameEverywhereAreNotFiltered) {
+    Environment environment;
+    environment.remainder = Image(8, 4, 3);
+    std::fill(environment.remainder.pixels.begin(), environment.remainder.pixels.end(), 0.25f);
+    EXPECT_TRUE(is_same_everywhere(environment));
+    WorkReport report;
+    std::vector<glm::vec3> filtered(5);
+    same_everywhere_baker(report)->bake(environment, filtered, report);
+    EXPECT_EQ(filtered, std::vector<glm::vec3>(5, glm::vec3(0.25f)));
+    EXPECT_EQ(report.skips.size(), 1u);
+    environment.remainder.at(3, 2)[2] = 0.26f;
+    EXPECT_FALSE(is_same_everywhere(environment));
+    environment.remainder.at(3, 2)[2] = 0.25f;
+    environment.distant_lights.push_back({});
+    EXPECT_FALSE(is_same_everywhere(environment));
+}
+
+TEST(BakedMap, RefusesRangesTheWrongWayRound) {
+    MapSettings settings;
+    for (const SmoothnessRange range : {SmoothnessRange{0.6, 0.3}, {-0.1, 0.5}, {0.5, 1.5}, {NAN, 0.5}}) {
+        settings.smoothness = range;
+        EXPECT_THROW(make_map(settings), InputError);
+    }
+}
+
+TEST(MakeBaker, KnowsItsMethodsByName) {
+    for (BakeMethod method : {BakeMethod::spectral, BakeMethod::table, BakeMethod::brute_force})
+        EXPECT_EQ(bake_method_from_name(bake_method_name(method)), method);
+    try {
+        bake_method_from_name("magic");
+        FAIL();
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("spectral, table, brute-force"), std::string::npos);
+    }
+}
+
+} // namespace
+} // namespace kokage

@@ -1,0 +1,271 @@
+// `kokage bake` as a user runs it, on small images and coarse maps.
+#include "common/scene/image_file.h"
+#include "reflection/maps/cube_file.h"
+#include "reflection/maps/map_file.h"
+#include "tests/support/program_run.h"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+using Json = nlohmann::json;
+using Words = std::vector<std::string>;
+
+Image gradient_image(int width, int height) {
+    Image image(width, height, 3);
+    for (int y = 0; y < height; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c)
+                image.at(x, y)[c] = 0.2f + 0.6f * float(y + c) / float(height + 2);
+    return image;
+}
+
+/// A coarse map, quickly; further words are added.
+Words small_bake(const std::string& environment, Words more) {
+    Words words = {"bake", environment, "--smoothness", "0,0.1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return words;
+}
+
+/// What is in a map of shells; files hold the time of their writing, too.
+std::vector<std::byte> texels_of(const std::filesystem::path& file) {
+    const MapFile map = read_map(file);
+    const std::span<const std::byte> texels = std::get<ShellMap>(map.map).texels();
+    return {texels.begin(), texels.end()};
+}
+
+/// The message of a run that is refused: exit status 2, one line, nothing written.
+std::string refusal(const Words& words) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(16, 8));
+    const ProgramRun run = run_kokage(words, folder.path());
+    EXPECT_EQ(run.status, 2) << run.errors;
+    EXPECT_EQ(std::count(run.errors.begin(), run.errors.end(), '\n'), 1) << run.errors;
+    EXPECT_EQ(folder.files(), Words({"in.exr"}));
+    return run.errors;
+}
+
+TEST(Bake, WritesAMapAndAReportAndSaysWhere) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const ProgramRun run = run_kokage(small_bake("in.exr", {"-o", "m.exr", "--report", "r.json"}), folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_EQ(run.errors, "");
+    EXPECT_NE(run.output.find((std::filesystem::canonical(folder.path()) / "m.exr").string()), std::string::npos);
+    EXPECT_NE(run.output.find("skipped: what is rougher or smoother"), std::string::npos) << run.output;
+    const MapFile file = read_map(folder / "m.exr");
+    EXPECT_NE(file.made_from.find("32 x 16"), std::string::npos);
+    const ShellMap& shells = std::get<ShellMap>(file.map);
+    EXPECT_GT(shells.lookup({0, -1, 0}, 10).x, shells.lookup({0, 1, 0}, 10).x) << "brighter below";
+    const Json report = Json::parse(read_text(folder / "r.json"));
+    EXPECT_EQ(report["settings"]["method"], "spectral");
+    EXPECT_EQ(report["map"]["bytes"], shells.bytes());
+    EXPECT_EQ(report["inputs"]["surroundings"]["width"], 32);
+    EXPECT_EQ(report["skipped"].size(), 1u);
+    EXPECT_GT(report["stages"].size(), 2u);
+}
+
+TEST(Bake, MethodsAgreeAndContainersAreWhatTheirEndingSays) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    std::vector<glm::vec3> values;
+    for (const std::string method : {"spectral", "table", "brute-force"}) {
+        const ProgramRun run =
+            run_kokage({"bake", "in.exr", "--container", "cube", "--size", "16", "--method", method, "-o", "m.exr"},
+                       folder.path());
+        ASSERT_EQ(run.status, 0) << run.errors;
+        values.push_back(std::get<VoxelCube>(read_map(folder / "m.exr").map).lookup({0, -1, 0}, 0.8f));
+    }
+    EXPECT_LT(glm::distance(values[0], values[2]), 2e-3f);
+    EXPECT_LT(glm::distance(values[1], values[2]), 2e-2f);
+    ASSERT_EQ(run_kokage({"bake", "in.exr", "--size", "32", "-o", "m.ktx2"}, folder.path()).status, 0);
+    ASSERT_EQ(run_kokage({"bake", "in.exr", "--size", "32", "-o", "m.dds"}, folder.path()).status, 0);
+    const PrefilteredCube cube = read_ktx2(folder / "m.ktx2").cube;
+    EXPECT_EQ(cube.levels.size(), 2u);
+    EXPECT_EQ(cube.kind, LobeKind::ggx);
+    EXPECT_EQ(cube.levels[1].texels, read_dds(folder / "m.dds").cube.levels[1].texels);
+}
+
+TEST(Bake, TakesSkyConstantAndLights) {
+    const TemporaryFolder folder;
+    for (const Words& words :
+         {small_bake("sky", {"--sun", "90,30", "-o", "a.exr"}), small_bake("constant:0.5", {"-o", "b.exr"}),
+          small_bake("gradient", {"--light", "sun:0,45,3,2,1", "-o", "c.exr"})}) {
+        const ProgramRun run = run_kokage(words, folder.path());
+        EXPECT_EQ(run.status, 0) << run.errors;
+    }
+    const ShellMap sky = std::get<ShellMap>(read_map(folder / "a.exr").map);
+    EXPECT_GT(sky.lookup(glm::normalize(glm::vec3(1, 0.57f, 0)), 20).x,
+              2 * sky.lookup(glm::normalize(glm::vec3(-1, 0.57f, 0)), 20).x)
+        << "the sun stands in the east";
+    EXPECT_NEAR(std::get<ShellMap>(read_map(folder / "b.exr").map).lookup({0, 1, 0}, 5).y, 0.5f, 1e-3f);
+}
+
+TEST(Bake, AStoredTableIsMadeOnceAndMapsStayTheSame) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const Words words = small_bake("in.exr", {"--method", "table", "--stored", "t.setup", "-o", "m.exr"});
+    ASSERT_EQ(run_kokage(words, folder.path()).status, 0);
+    const std::vector<std::byte> first = texels_of(folder / "m.exr");
+    ASSERT_TRUE(std::filesystem::exists(folder / "t.setup"));
+    const ProgramRun again = run_kokage(words, folder.path());
+    ASSERT_EQ(again.status, 0);
+    EXPECT_NE(again.output.find("reading the weight table"), std::string::npos) << again.output;
+    EXPECT_TRUE(texels_of(folder / "m.exr") == first);
+    std::ofstream(folder / "t.setup") << "something else";
+    const ProgramRun refused = run_kokage(words, folder.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.errors.find("t.setup"), std::string::npos) << refused.errors;
+}
+
+TEST(Bake, SameBitsWithAnyNumberOfThreads) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(64, 32));
+    for (const std::string method : {"spectral", "table"}) {
+        for (const std::string threads : {"1", "4"})
+            ASSERT_EQ(run_kokage(small_bake("in.exr", {"--method", method, "--threads", threads, "-o",
+                                                       method + threads + ".exr"}),
+                                 folder.path())
+                          .status,
+                      0);
+        EXPECT_TRUE(texels_of(folder / (method + "1.exr")) == texels_of(folder / (method + "4.exr"))) << method;
+    }
+}
+
+TEST(Bake, StrangeImagesGiveARightMapOrOneClearLine) {
+    const TemporaryFolder folder;
+    const auto bake = [&](const Image& image, const std::string& name, Words more) {
+        save_image(folder / name, image);
+        more.insert(more.end(), {"-o", "m.exr"});
+        return run_kokage(small_bake(name, more), folder.path());
+    };
+    const auto value = [&](const glm::vec3& direction) {
+        return std::get<ShellMap>(read_map(folder / "m.exr").map).lookup(direction, 8);
+    };
+    // All black, constant, one pixel, not twice as wide as high, 8 bits.
+    ASSERT_EQ(bake(Image(32, 16, 3), "black.exr", {}).status, 0);
+    EXPECT_EQ(value({1, 0, 0}), glm::vec3(0.f));
+    Image one(1, 1, 3);
+    one.pixels = {0.25f, 0.5f, 1};
+    ASSERT_EQ(bake(one, "one.exr", {}).status, 0);
+    EXPECT_LT(glm::distance(value({0, 0, 1}), glm::vec3(0.25f, 0.5f, 1)), 1e-3f);
+    ASSERT_EQ(bake(gradient_image(1, 1), "one.png", {}).status, 0);
+    const ProgramRun odd = bake(gradient_image(40, 16), "odd.exr", {});
+    EXPECT_EQ(odd.status, 0);
+    EXPECT_NE(odd.errors.find("not twice as wide as high"), std::string::npos) << odd.errors;
+    EXPECT_EQ(bake(gradient_image(8, 16), "high.exr", {}).status, 2);
+    EXPECT_EQ(bake(gradient_image(32, 16), "eight.png", {}).status, 0);
+    // One pixel of 1e30: everything stays finite, and halves say that they cut it off.
+    Image bright = gradient_image(32, 16);
+    bright.at(9, 9)[0] = 1e30f;
+    const ProgramRun huge = bake(bright, "bright.exr", {});
+    EXPECT_EQ(huge.status, 0) << huge.errors;
+    EXPECT_NE(huge.errors.find("--format float"), std::string::npos) << huge.errors;
+    ASSERT_EQ(bake(bright, "bright.exr", {"--format", "float"}).status, 0);
+    for (const glm::vec3 direction : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)})
+        EXPECT_TRUE(value(direction).x >= 0 && value(direction).x < 1e31f);
+    // More columns than a loader takes: reduced.
+    Image wide(16384, 2, 3);
+    std::fill(wide.pixels.begin(), wide.pixels.end(), 0.5f);
+    wide.at(5, 0)[0] = 0.6f;
+    EXPECT_EQ(bake(wide, "wide.exr", {}).status, 0);
+    EXPECT_NEAR(value({0, 1, 0}).y, 0.5f, 1e-2f);
+}
+
+TEST(Bake, BadPixelsAreRepairedOrRefusedWithTheirPlace) {
+    const TemporaryFolder folder;
+    // save_image refuses NaN; negative values pass.
+    Image spoilt = gradient_image(32, 16);
+    spoilt.at(7, 8)[2] = -3;
+    save_image(folder / "in.exr", spoilt);
+    const ProgramRun repaired = run_kokage(small_bake("in.exr", {"-o", "m.exr"}), folder.path());
+    EXPECT_EQ(repaired.status, 0);
+    EXPECT_NE(repaired.errors.find("pixel (7, 8)"), std::string::npos) << repaired.errors;
+    const ProgramRun refused = run_kokage(small_bake("in.exr", {"--strict", "-o", "n.exr"}), folder.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.errors.find("(7, 8)"), std::string::npos) << refused.errors;
+}
+
+TEST(Bake, WhatCantBeIsRefusedInOneLine) {
+    const std::pair<Words, const char*> cases[] = {
+        {{"none.exr", "-o", "m.exr"}, "there is no file 'none.exr'"},
+        {{"in.exr", "-o", "m.png"}, "the ending .png is not known"},
+        {{"in.exr", "-o", "nowhere/m.exr"}, "nowhere"},
+        {{"in.exr", "-o", "in.exr"}, "named twice"},
+        {{"in.exr", "--container", "cube", "-o", "m.ktx2"}, "--container"},
+        {{"in.exr", "--container", "ball", "-o", "m.exr"}, "shells or cube"},
+        {{"in.exr", "--lobe", "ward", "-o", "m.exr"}, "phong or ggx"},
+        {{"in.exr", "--method", "magic", "-o", "m.exr"}, "spectral, table, brute-force"},
+        {{"in.exr", "--size", "64", "-o", "m.exr"}, "--size"},
+        {{"in.exr", "--size", "0", "-o", "m.ktx2"}, "--size"},
+        {{"in.exr", "--size", "17", "--container", "cube", "-o", "m.exr"}, "17"},
+        {{"in.exr", "--size", "48", "-o", "m.ktx2"}, "power of two"},
+        {{"in.exr", "--levels", "3", "-o", "m.exr"}, "--levels"},
+        {{"in.exr", "--levels", "30", "-o", "m.ktx2"}, "levels"},
+        {{"in.exr", "--smoothness", "0.6,0.3", "-o", "m.exr"}, "rough first"},
+        {{"in.exr", "--smoothness", "0.6", "-o", "m.exr"}, "rough first"},
+        {{"in.exr", "--smoothness", "a,b", "-o", "m.exr"}, "--smoothness"},
+        {{"in.exr", "--tolerance", "1e-9", "-o", "m.exr"}, "--tolerance"},
+        {{"in.exr", "--tolerance", "nan", "-o", "m.exr"}, "--tolerance"},
+        {{"in.exr", "--tolerance", "0.01", "--method", "table", "-o", "m.exr"}, "can't aim at an error"},
+        {{"in.exr", "--threshold", "0.01", "-o", "m.exr"}, "--method table"},
+        {{"in.exr", "--threshold", "0.5", "--method", "table", "-o", "m.exr"}, "below 0.3"},
+        {{"in.exr", "--weights", "new", "--method", "table", "-o", "m.exr"}, "matched, renormalised, paper"},
+        {{"in.exr", "--stored", "x", "--method", "brute-force", "-o", "m.exr"}, "--stored"},
+        {{"in.exr", "--format", "byte", "-o", "m.exr"}, "shared-exponent"},
+        {{"in.exr", "--format", "shared-exponent", "-o", "m.dds"}, "--format"},
+        {{"in.exr", "--light", "point:0,1,0,1,1,1", "-o", "m.exr"}, "infinitely far"},
+        {{"in.exr", "--sun", "10,10", "-o", "m.exr"}, "--sun"},
+        {{"in.exr", "-o", "m_%03d.exr"}, "one environment"},
+        {{"in_%d.exr", "-o", "m_%d.exr"}, "names no images"},
+        {{".", "-o", "m.exr"}, "no place for the frames' numbers"},
+        {{".", "--broken-frames", "hide", "-o", "m_%d.exr"}, "skip or stop"},
+        {{"in.exr", "-o", "m.exr", "--report", "r.txt"}, "r.txt"},
+    };
+    for (const auto& [words, expected] : cases) {
+        Words all = {"bake"};
+        all.insert(all.end(), words.begin(), words.end());
+        const std::string message = refusal(all);
+        EXPECT_NE(message.find(expected), std::string::npos) << expected << "\n" << message;
+    }
+}
+
+TEST(Bake, AVideoNamesItsBrokenFramesAndGoesOnWhereItStopped) {
+    const TemporaryFolder folder;
+    for (int i : {1, 2, 4})
+        save_image(folder / ("f" + std::to_string(i) + ".hdr"), gradient_image(16, 8));
+    std::ofstream(folder / "f3.hdr") << "not a picture";
+    const Words words = {"bake", "f%d.hdr", "--container",   "cube",     "--size",
+                         "16",   "-o",      "maps/%02d.exr", "--report", "r.json"};
+    const ProgramRun run = run_kokage(words, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.errors.find("frame 3 is broken and left out"), std::string::npos) << run.errors;
+    EXPECT_NE(run.output.find("3 frames baked"), std::string::npos) << run.output;
+    EXPECT_TRUE(std::filesystem::exists(folder / "maps" / "04.exr"));
+    EXPECT_FALSE(std::filesystem::exists(folder / "maps" / "03.exr"));
+    const Json report = Json::parse(read_text(folder / "r.json"));
+    EXPECT_EQ(report["sequence"]["baked"], 3);
+    EXPECT_EQ(report["sequence"]["first_broken"][0]["frame"], 3);
+    save_image(folder / "f3.hdr", gradient_image(16, 8));
+    const ProgramRun again = run_kokage(words, folder.path());
+    EXPECT_NE(again.output.find("1 frame baked"), std::string::npos) << again.output;
+    EXPECT_NE(again.output.find("3 kept from before"), std::string::npos) << again.output;
+    Words other = words;
+    other[5] = "32";
+    const ProgramRun refused = run_kokage(other, folder.path());
+    EXPECT_EQ(refused.status, 2);
+    EXPECT_NE(refused.errors.find("another size (16, not 32)"), std::string::npos) << refused.errors;
+    std::ofstream(folder / "f2.hdr") << "not a picture";
+    Words stopping = words;
+    stopping.insert(stopping.end(), {"--broken-frames", "stop"});
+    const ProgramRun stopped = run_kokage(stopping, folder.path());
+    EXPECT_EQ(stopped.status, 2);
+    EXPECT_NE(stopped.errors.find("frame 2 is broken"), std::string::npos) << stopped.errors;
+    EXPECT_TRUE(std::filesystem::exists(folder / "maps" / "02.exr")) << "finished before it broke";
+}
+
+} // namespace
+} // namespace kokage

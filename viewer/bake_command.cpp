@@ -1,0 +1,180 @@
+// `kokage bake`: surroundings -> light filtered by ever wider lobes, as a map that renderers look up.
+#include "common/environment/light_description.h"
+#include "common/services/count_text.h"
+#include "common/services/error.h"
+#include "common/services/stopwatch.h"
+#include "reflection/maps/bake_sequence.h"
+#include "viewer/bake_options.h"
+#include "viewer/bake_report.h"
+#include "viewer/command.h"
+#include "viewer/stop_signal.h"
+#include "viewer/values.h"
+#include "viewer/write_json.h"
+
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+void print_warnings(const std::vector<std::string>& warnings) {
+    for (const std::string& warning : warnings)
+        std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
+}
+
+void print_stages(const WorkReport& work) {
+    for (const WorkReport::Stage& stage : work.stages)
+        std::printf("  %-34s %10s  (CPU %s)\n", stage.name.c_str(), duration_text(stage.wall_seconds).c_str(),
+                    duration_text(stage.cpu_seconds).c_str());
+    for (const WorkReport::Skip& skip : work.skips)
+        std::printf("  skipped: %s (%s): %s\n", skip.what.c_str(), skip.why.c_str(), skip.saved.c_str());
+}
+
+void print_map(const BakeOptions& options, const BakedMap& map) {
+    std::printf("%s, %s: %s, %s, by %s\n", std::string(map_container_name(options.map.container)).c_str(),
+                std::string(lobe_kind_name(options.map.lobe)).c_str(),
+                counted(map.layout().size(), "filtered texel", "filtered texels").c_str(),
+                bytes_text(double(map.bytes())).c_str(), options.method.c_str());
+}
+
+void print_file(const std::filesystem::path& file) {
+    if (!file.empty())
+        std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
+                    bytes_text(double(std::filesystem::file_size(file))).c_str());
+}
+
+BakeRecord begin_record(const BakeOptions& options, const BakedMap& map) {
+    BakeRecord record;
+    record.options = &options;
+    record.map = &map;
+    if (const std::optional<WorkReport::Skip> skip = saved_by_range(options.map, map))
+        record.work.skips.push_back(*skip);
+    return record;
+}
+
+void finish_record(const BakeOptions& options, BakeRecord& record, const Stopwatch& watch) {
+    record.cpu_seconds = watch.cpu();
+    record.wall_seconds = watch.wall();
+    if (!options.report.empty())
+        write_json(options.report, bake_report(record));
+}
+
+std::unique_ptr<Baker> baker_for(const BakeOptions& options, const BakedMap& map, const Environment& environment,
+                                 WorkReport& work, Progress& progress) {
+    if (map.layout().size() == 0)
+        return nullptr;
+    if (is_same_everywhere(environment))
+        return same_everywhere_baker(work);
+    return make_baker(map.layout(), environment.remainder.width, environment.remainder.height, options.baker, work,
+                      progress);
+}
+
+void bake_one(const BakeOptions& options, const CommandContext& context) {
+    const Stopwatch watch;
+    const std::unique_ptr<BakedMap> map = make_map(options.map);
+    BakeRecord record = begin_record(options, *map);
+    const Stopwatch loading;
+    const Environment environment =
+        obtain_environment(options.surroundings, glm::dvec3(0), record.environment_report, false);
+    record.environment = &environment;
+    record.work.stages.push_back({"reading the surroundings", loading.cpu(), loading.wall()});
+    record.work.warnings = record.environment_report.warnings;
+    context.progress->throw_if_stopped();
+    const std::unique_ptr<Baker> baker = baker_for(options, *map, environment, record.work, *context.progress);
+    map->bake(environment, baker.get(), record.work, *context.progress);
+    context.progress->throw_if_stopped();
+
+    const WritingFiles writing;
+    const Stopwatch saving;
+    context.progress->begin("writing", 0);
+    map->write(options.output, environment.description, record.work);
+    record.work.stages.push_back({"writing", saving.cpu(), saving.wall()});
+    finish_record(options, record, watch);
+    context.progress->clear();
+    if (context.quiet)
+        return;
+    print_warnings(record.work.warnings);
+    std::printf("%s\n", environment.description.c_str());
+    print_map(options, *map);
+    print_stages(record.work);
+    print_file(options.output);
+    print_file(options.report);
+}
+
+SequenceSettings sequence_settings(const BakeOptions& options) {
+    SequenceSettings settings;
+    settings.output = options.output;
+    settings.baker = options.baker;
+    settings.loading.strict = options.surroundings.strict;
+    settings.stop_at_broken = options.broken_frames == "stop";
+    settings.identity = bake_identity(options).dump();
+    Environment lights;
+    for (const std::string& light : options.surroundings.lights)
+        add_light(lights, light);
+    settings.lights = lights.distant_lights;
+    return settings;
+}
+
+void print_sequence(const SequenceResult& result, const std::string& output) {
+    for (const BrokenFrame& frame : result.first_broken)
+        std::fprintf(stderr, "kokage: warning: frame %s is broken and left out: %s\n",
+                     std::to_string(frame.number).c_str(), frame.why.c_str());
+    if (result.broken > result.first_broken.size())
+        std::fprintf(stderr, "kokage: warning: %s more broken frames are left out\n",
+                     count_text(result.broken - result.first_broken.size()).c_str());
+    std::printf("%s: %s baked", output.c_str(), counted(result.baked, "frame", "frames").c_str());
+    if (result.baked > 0)
+        std::printf(" in %s (%.3g a second, CPU %s a frame)", duration_text(result.wall_seconds).c_str(),
+                    double(result.baked) / result.wall_seconds,
+                    duration_text(result.cpu_seconds / double(result.baked)).c_str());
+    if (result.kept > 0)
+        std::printf(", %s kept from before", count_text(result.kept).c_str());
+    std::printf("%s\n", result.broken > 0 ? (", " + count_text(result.broken) + " broken").c_str() : "");
+}
+
+void bake_video(const BakeOptions& options, const CommandContext& context) {
+    const Stopwatch watch;
+    const std::vector<SequenceImage> images = image_sequence(options.surroundings.environment);
+    const std::unique_ptr<BakedMap> map = make_map(options.map);
+    BakeRecord record = begin_record(options, *map);
+    SequenceResult result;
+    try {
+        const WritingFiles writing; // a second Ctrl-C waits for the frame's file, too
+        result = bake_sequence(images, sequence_settings(options), *map, record.work, *context.progress);
+    } catch (const Stopped&) {
+        throw StoppedBetweenFiles("finished frames stay in '" +
+                                  std::filesystem::path(options.output).parent_path().string() +
+                                  "'; the same command goes on");
+    }
+    record.sequence = &result;
+    finish_record(options, record, watch);
+    context.progress->clear();
+    if (context.quiet)
+        return;
+    print_warnings(record.work.warnings);
+    print_map(options, *map);
+    print_stages(record.work);
+    print_sequence(result, options.output);
+    print_file(options.report);
+}
+
+} // namespace
+
+Command bake_command(CLI::App& program) {
+    const auto options = std::make_shared<BakeOptions>();
+    CLI::App* app = program.add_subcommand("bake", "Bake a reflection map: surroundings filtered for every roughness");
+    app->footer("\nExamples: kokage bake forest.hdr -o forest.ktx2\n          kokage bake sky --sun 250,20 "
+                "--smoothness 0.3,0.6 -o evening.exr\n          kokage bake 'frames/%04d.hdr' --container cube "
+                "--size 64 -o 'maps/%04d.exr'");
+    add_bake_options(*app, *options);
+    return {app, [options](const CommandContext& context) {
+                complete_bake_options(*options);
+                if (options->is_sequence)
+                    bake_video(*options, context);
+                else
+                    bake_one(*options, context);
+            }};
+}
+
+} // namespace kokage

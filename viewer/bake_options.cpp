@@ -1,0 +1,230 @@
+#include "viewer/bake_options.h"
+#include "common/services/error.h"
+#include "common/services/output_file.h"
+#include "reflection/maps/image_sequence.h"
+#include "viewer/data_folder.h"
+#include "viewer/output_check.h"
+#include "viewer/values.h"
+
+#include <algorithm>
+
+namespace kokage {
+namespace fs = std::filesystem;
+namespace {
+
+void add_map_options(CLI::App& app, BakeOptions& o) {
+    app.add_option("--container", o.container,
+                   ".exr: shells (a map over all directions for each of a few lobes: smaller and more exact; the "
+                   "default) or cube (voxels: direction and smoothness as one vector)")
+        ->type_name("NAME")
+        ->group("Map");
+    app.add_option("--lobe", o.lobe,
+                   "phong or ggx (glTF's roughness, seen along the normal); otherwise phong in .exr, ggx in .ktx2 and "
+                   ".dds")
+        ->type_name("NAME")
+        ->group("Map");
+    app.add_option("--size", o.size,
+                   "cube: voxels along an edge (otherwise 128); .ktx2, .dds: texels along an edge of the smoothest "
+                   "level (otherwise 256). Shells find theirs from their lobes")
+        ->type_name("N")
+        ->group("Map");
+    app.add_option("--levels", o.levels,
+                   ".ktx2, .dds: mip levels, of roughness 0 to 1 in equal steps (otherwise down to 16 texels)")
+        ->type_name("N")
+        ->group("Map");
+    app.add_option("--smoothness", o.smoothness,
+                   "Only what is as smooth as A to B, from 0 (rough) to 1: the part of the map that a scene uses, no "
+                   "larger than its lobes need")
+        ->type_name("A,B")
+        ->group("Map");
+    app.add_option("--detail", o.detail, "shells: texels in a lobe's width (otherwise 1.15)")
+        ->type_name("X")
+        ->group("Map");
+    app.add_option("--filter", o.filter, "shells: bilinear, or cubic (smoother and more exact; four reads for one)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Map");
+    app.add_option("--format", o.format, "Texels: half, float or shared-exponent")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Map");
+}
+
+void add_method_options(CLI::App& app, BakeOptions& o) {
+    app.add_option("--method", o.method,
+                   "spectral (by spherical harmonics: exact to a tolerance), table (weights on geodesic domes, made "
+                   "once: fast, to a few levels of 256) or brute-force (the truth, slow)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--tolerance", o.tolerance,
+                   "spectral: largest error, as a share of 1 or of the brightest light left when lamps are split off "
+                   "(otherwise 0.0001)")
+        ->type_name("E")
+        ->group("Method");
+    app.add_option("--threshold", o.threshold,
+                   "table: weights below this share of a lobe's peak are left out (otherwise 0.001)")
+        ->type_name("TH")
+        ->group("Method");
+    app.add_option("--weights", o.weights,
+                   "table: matched (to each lobe's mean direction), renormalised, or paper (cut and not normalised: "
+                   "loses light, as published)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Method");
+    app.add_option("--stored", o.stored,
+                   "table: a file that keeps the weights, which do not depend on the light; read if it is there, else "
+                   "made")
+        ->type_name("FILE")
+        ->group("Method");
+}
+
+void add_output_options(CLI::App& app, BakeOptions& o) {
+    app.add_option("-o,--output", o.output,
+                   "The map: .exr (shells or cube), .ktx2 or .dds (a cube map, a roughness a mip level); for a video a "
+                   "pattern such as maps/%04d.ktx2")
+        ->type_name("OUT")
+        ->required()
+        ->group("Output");
+    app.add_option("--broken-frames", o.broken_frames,
+                   "Video: what happens at an image that can't be read: skip (left out and named) or stop")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Output");
+    app.add_option("--report", o.report, "What was done, counted, timed and skipped")
+        ->type_name("R.json")
+        ->group("Output");
+}
+
+[[noreturn]] void refuse(const std::string& option, const std::string& why) {
+    throw InputError(option + ": " + why);
+}
+
+void complete_container(BakeOptions& o) {
+    const std::string ending = lower_ending(o.output);
+    const bool is_cube_map = ending == ".ktx2" || ending == ".dds";
+    if (is_cube_map && !o.container.empty())
+        refuse("--container", "a " + ending + " holds a cube map; leave it out, or write an .exr");
+    if (!o.container.empty() && o.container != "shells" && o.container != "cube")
+        refuse("--container", "'" + o.container + "' is not known; give shells or cube");
+    o.map.container = is_cube_map             ? MapContainer::cube_map
+                      : o.container == "cube" ? MapContainer::voxel_cube
+                                              : MapContainer::shells;
+    o.map.lobe = o.lobe.empty() ? (is_cube_map ? LobeKind::ggx : LobeKind::phong) : lobe_kind_from_name(o.lobe);
+    o.map.format = texel_format_from_name(o.format);
+    if (o.map.format == TexelFormat::shared_exponent && (ending == ".dds" || o.container == "cube"))
+        refuse("--format", "shared-exponent goes with shells and .ktx2, not with " +
+                               std::string(ending == ".dds" ? ".dds" : "a voxel cube") + "; give half or float");
+}
+
+void complete_size(BakeOptions& o) {
+    const MapContainer container = o.map.container;
+    if (o.size && container == MapContainer::shells)
+        refuse("--size", "shells are as large as their lobes need; --detail makes them finer, --container cube has a "
+                         "size");
+    if (o.size && (*o.size < 1 || *o.size > 16384))
+        refuse("--size", std::to_string(*o.size) + " is not from 1 to 16384");
+    if (o.levels && container != MapContainer::cube_map)
+        refuse("--levels", "only .ktx2 and .dds have mip levels; leave it out");
+    if (o.levels && *o.levels < 1)
+        refuse("--levels", std::to_string(*o.levels) + " levels make no map; give at least 1");
+    if (o.detail && container != MapContainer::shells)
+        refuse("--detail", "it makes shells finer; here --size does");
+    if (o.detail && !(*o.detail >= 0.25 && *o.detail <= 16))
+        refuse("--detail", "it has to be from 0.25 to 16 texels");
+    if (o.filter != "bilinear" && o.filter != "cubic")
+        refuse("--filter", "'" + o.filter + "' is not known; give bilinear or cubic");
+    if (o.filter == "cubic" && container != MapContainer::shells)
+        refuse("--filter", "only shells can be read so; leave it out");
+    o.map.size = o.size.value_or(container == MapContainer::voxel_cube ? 128 : 0);
+    o.map.levels = o.levels.value_or(0);
+    o.map.texels_a_width = o.detail.value_or(o.map.texels_a_width);
+    o.map.filter = o.filter == "cubic" ? TexelFilter::cubic : TexelFilter::bilinear;
+    if (o.smoothness.empty())
+        return;
+    const std::vector<double> range = numbers_from(o.smoothness, "--smoothness");
+    if (range.size() != 2 || !(range[0] >= 0 && range[0] <= range[1] && range[1] <= 1))
+        refuse("--smoothness", "'" + o.smoothness + "' is not two numbers from 0 (rough) to 1, rough first: 0.3,0.6");
+    o.map.smoothness = SmoothnessRange{range[0], range[1]};
+}
+
+void complete_method(BakeOptions& o) {
+    o.baker.method = bake_method_from_name(o.method);
+    const bool spectral = o.baker.method == BakeMethod::spectral, table = o.baker.method == BakeMethod::table;
+    if (o.tolerance && !spectral)
+        refuse("--tolerance", table ? "the table can't aim at an error; give a --threshold, or --method spectral"
+                                    : "brute-force is exact; leave it out");
+    if (o.tolerance && !(*o.tolerance >= 1e-5 && *o.tolerance <= 0.1))
+        refuse("--tolerance", "it has to be from 0.00001, which sums of floats can hold, to 0.1; finer than that is "
+                              "only --method brute-force");
+    if (!table && (o.threshold || o.weights != "matched"))
+        refuse(o.threshold ? "--threshold" : "--weights", "it shapes the table alone; add --method table");
+    if (!o.stored.empty() && !table)
+        refuse("--stored", "it keeps the table's weights, and " + o.method +
+                               " keeps nothing between runs; leave it out, or add --method table");
+    o.baker.tolerance = o.tolerance.value_or(o.baker.tolerance);
+    o.baker.table.threshold = o.threshold.value_or(o.baker.table.threshold);
+    o.baker.table.weights = table_weights_from_name(o.weights);
+    o.baker.stored_setup = o.stored;
+}
+
+void complete_outputs(BakeOptions& o) {
+    o.is_sequence = names_a_sequence(o.surroundings.environment);
+    const bool numbered = has_number_place(fs::path(o.output).filename().string());
+    if (o.is_sequence && !numbered)
+        refuse("-o", "'" + o.output + "' has no place for the frames' numbers; give a pattern such as maps/%04d" +
+                         lower_ending(o.output));
+    if (o.broken_frames != "skip" && o.broken_frames != "stop")
+        refuse("--broken-frames", "'" + o.broken_frames + "' is not known; give skip or stop");
+    if (o.is_sequence) {
+        const std::string ending = lower_ending(o.output);
+        if (ending != ".exr" && ending != ".ktx2" && ending != ".dds")
+            refuse("-o", "the maps can't be '" + o.output + "'; give one of .exr, .ktx2, .dds");
+    } else {
+        if (numbered)
+            refuse("-o", "'" + o.output + "' has a place for frames' numbers, but '" + o.surroundings.environment +
+                             "' is one environment; give a folder of images, a list (.txt) or a pattern");
+        check_output(o.output, "the map", {".exr", ".ktx2", ".dds"});
+        check_distinct({fs::path(o.surroundings.environment), fs::path(o.output), o.report, o.stored});
+    }
+    if (!o.report.empty())
+        check_output(o.report, "the report", {".json"});
+    if (!o.stored.empty() && !fs::exists(o.stored))
+        const OutputFile probe(o.stored); // finds now what would lose the work later
+}
+
+} // namespace
+
+void add_bake_options(CLI::App& app, BakeOptions& o) {
+    app.add_option("ENV", o.surroundings.environment,
+                   "What is reflected: a lat-long image (.hdr, .exr, .png, ...), twice as wide as high; sky, "
+                   "constant[:R,G,B] or gradient[:nine numbers]; or a video: a pattern (frames/%04d.hdr), a folder of "
+                   "images, a list of them (.txt)")
+        ->type_name("ENV")
+        ->required();
+    add_data_option(app, o.data, "ENV is");
+    add_map_options(app, o);
+    add_method_options(app, o);
+    add_light_options(app, o.surroundings);
+    add_output_options(app, o);
+}
+
+void complete_bake_options(BakeOptions& o) {
+    o.surroundings.option = "ENV";
+    find_in_data(o.data, {&o.surroundings.environment});
+    complete_container(o);
+    complete_size(o);
+    complete_method(o);
+    complete_outputs(o);
+    if (!o.is_sequence)
+        check_surroundings(o.surroundings);
+    else if (!o.surroundings.sun.empty() || o.surroundings.turbidity)
+        throw InputError("--sun and --turbidity shape the sky, not a video; add a light: --light sun:AZ,EL,R,G,B");
+    for (const std::string& light : o.surroundings.lights)
+        if (light.starts_with("point"))
+            refuse("--light", "'" + light +
+                                  "' is at a place, and a map holds light from infinitely far; give sun, "
+                                  "disc or directional");
+}
+
+} // namespace kokage

@@ -1,0 +1,39 @@
+#pragma once
+// What `kokage bake` can be told.
+#include "reflection/maps/baked_map.h"
+#include "viewer/surroundings.h"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+namespace kokage {
+
+struct BakeOptions {
+    Surroundings surroundings; ///< .environment is ENV
+    std::filesystem::path data;
+
+    std::string container, lobe, smoothness, filter = "bilinear", format = "half";
+    std::optional<int> size, levels;
+    std::optional<double> detail;
+
+    std::string method = "spectral", weights = "matched";
+    std::optional<double> tolerance, threshold;
+    std::filesystem::path stored;
+
+    std::string output;
+    std::filesystem::path report;
+    std::string broken_frames = "skip";
+
+    bool is_sequence = false; ///< by complete_bake_options
+    MapSettings map{};
+    BakerSettings baker{};
+};
+
+void add_bake_options(CLI::App& app, BakeOptions& options);
+
+/// Checks everything that can be known before any work, and fills `map` and `baker`. Throws InputError.
+void complete_bake_options(BakeOptions& options);
+
+} // namespace kokage

@@ -1,0 +1,93 @@
+#include "viewer/bake_report.h"
+#include "viewer/output_check.h"
+#include "viewer/shading_report.h"
+
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+using Json = nlohmann::ordered_json;
+
+Json environment_json(const Environment& environment, const EnvironmentReport& report) {
+    Json lights = Json::array();
+    for (const DistantLight& light : environment.distant_lights)
+        lights.push_back(light.name);
+    Json json = {
+        {"description", environment.description},
+        {"width", environment.remainder.width},
+        {"height", environment.remainder.height},
+        {"bad_pixels",
+         {{"nan", report.nan_pixels}, {"infinite", report.infinite_pixels}, {"negative", report.negative_pixels}}},
+        {"added_lights", std::move(lights)}};
+    if (!report.note.empty())
+        json["note"] = report.note;
+    return json;
+}
+
+Json sequence_json(const SequenceResult& result) {
+    Json broken = Json::array();
+    for (const BrokenFrame& frame : result.first_broken)
+        broken.push_back({{"frame", frame.number}, {"why", frame.why}});
+    return {{"frames", result.frames},
+            {"baked", result.baked},
+            {"kept", result.kept},
+            {"broken", result.broken},
+            {"cpu_seconds", result.cpu_seconds},
+            {"wall_seconds", result.wall_seconds},
+            {"first_broken", std::move(broken)}};
+}
+
+} // namespace
+
+Json bake_identity(const BakeOptions& o) {
+    Json json = {{"program", "kokage " KOKAGE_VERSION},
+                 {"container", map_container_name(o.map.container)},
+                 {"lobe", lobe_kind_name(o.map.lobe)},
+                 {"size", o.map.size},
+                 {"levels", o.map.levels},
+                 {"detail", o.map.texels_a_width},
+                 {"filter", o.filter},
+                 {"format", o.format},
+                 {"smoothness", o.smoothness},
+                 {"output", std::filesystem::path(o.output).filename().string()},
+                 {"method", o.method},
+                 {"lights", o.surroundings.lights},
+                 {"strict", o.surroundings.strict}};
+    if (o.baker.method == BakeMethod::spectral)
+        json["tolerance"] = o.baker.tolerance;
+    if (o.baker.method == BakeMethod::table) {
+        json["threshold"] = o.baker.table.threshold;
+        json["weights"] = o.weights;
+    }
+    return json;
+}
+
+Json bake_report(const BakeRecord& record) {
+    const BakeOptions& o = *record.options;
+    Json json = {{"inputs", {{"environment", o.surroundings.environment}}}, {"settings", bake_identity(o)}};
+    if (record.environment)
+        json["inputs"]["surroundings"] = environment_json(*record.environment, record.environment_report);
+    json["map"] = {{"file", o.output},
+                   {"container", map_container_name(o.map.container)},
+                   {"filtered_texels", record.map->layout().size()},
+                   {"bytes", record.map->bytes()}};
+    if (record.sequence)
+        json["sequence"] = sequence_json(*record.sequence);
+    json["counts"] = Json::object();
+    for (const WorkReport::Count& count : record.work.counts)
+        json["counts"][count.name] = count.value;
+    json["stages"] = Json::array();
+    for (const WorkReport::Stage& stage : record.work.stages)
+        json["stages"].push_back(
+            {{"name", stage.name}, {"cpu_seconds", stage.cpu_seconds}, {"wall_seconds", stage.wall_seconds}});
+    json["skipped"] = Json::array();
+    for (const WorkReport::Skip& skip : record.work.skips)
+        json["skipped"].push_back({{"what", skip.what}, {"why", skip.why}, {"saved", skip.saved}});
+    json["warnings"] = record.work.warnings;
+    json["cpu_seconds"] = record.cpu_seconds;
+    json["wall_seconds"] = record.wall_seconds;
+    json["peak_memory_bytes"] = peak_memory_bytes();
+    return json;
+}
+
+} // namespace kokage
