@@ -2,6 +2,7 @@
 #include "common/directions/legendre.h"
 #include "common/directions/lobes.h"
 #include "common/services/parallel.h"
+#include "reflection/maps/light_tree.h"
 #include "reflection/maps/lobe_sums.h"
 #include "reflection/maps/shell_map.h"
 
@@ -144,11 +145,15 @@ void LobeLights::make_groups(const TexelLayout& layout, std::uint32_t begin, std
                 length > 0 ? sum / length : glm::vec3(x_[begin], y_[begin], z_[begin]),
                 0,
                 layout.parameters[texels_[begin]],
-                0};
+                0,
+                shape_[begin],
+                shape_[begin]};
     double widest = 0;
     for (std::uint32_t i = begin; i < end; ++i) {
         group.chord = std::max(group.chord, glm::distance(group.axis, glm::vec3(x_[i], y_[i], z_[i])));
         group.peak = std::max(group.peak, peak_[i]);
+        group.least_shape = std::min(group.least_shape, shape_[i]);
+        group.most_shape = std::max(group.most_shape, shape_[i]);
         const float parameter = layout.parameters[texels_[i]];
         if (const double spread = lobe_spread({kind_, double(parameter)}); spread > widest) {
             widest = spread;
@@ -165,6 +170,7 @@ std::size_t LobeLights::bytes() const {
 std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float negligible,
                               std::span<const float> factors, std::span<glm::vec3> filtered) const {
     constexpr std::size_t kBlock = 64;
+    const std::vector<LightTree> trees(clusters.begin(), clusters.end());
     std::vector<std::uint64_t> evaluated((groups_.size() + kBlock - 1) / kBlock);
     parallel_blocks(groups_.size(), kBlock, [&](std::size_t first, std::size_t last) {
         std::vector<PointOfLight> near;
@@ -172,7 +178,9 @@ std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float ne
         for (std::size_t g = first; g < last; ++g) {
             const Group& group = groups_[g];
             near.clear();
-            for (const ClusterOfLight& cluster : clusters) {
+            const LobeBounds bounds{kind_, group.peak, group.least_shape, group.most_shape};
+            for (std::size_t i = 0; i < clusters.size(); ++i) {
+                const ClusterOfLight& cluster = clusters[i];
                 const double share = double(negligible) / (double(cluster.strength) * double(group.peak));
                 if (!(share < 1))
                     continue;
@@ -180,9 +188,7 @@ std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float ne
                 const float reach = float(std::sqrt(lobe_reach({kind_, double(group.widest)}, share))) + group.chord;
                 if (glm::distance(group.axis, cluster.axis) > reach + cluster.chord)
                     continue;
-                for (const PointOfLight& point : cluster.points)
-                    if (glm::distance(group.axis, point.direction) <= reach)
-                        near.push_back(point);
+                trees[i].gather(group.axis, group.chord, reach, bounds, negligible, near);
             }
             if (near.empty())
                 continue;

@@ -33,8 +33,9 @@ class LobeLights {
   public:
     explicit LobeLights(const TexelLayout& layout);
     /// filtered += factors[texel] x sum over points of irradiance x lobe, but for clusters that add less than
-    /// `negligible`; no factors = 1. The same bits with any number of threads. Returns how many lobes were evaluated.
-    /// Relative error 1e-5.
+    /// `negligible`; points far from a group of texels are gathered as long as that changes less than `negligible` by
+    /// what is gathered in one. No factors = 1. The same bits with any number of threads. Returns how many lobes were
+    /// evaluated. Relative error 1e-5 beside.
     std::uint64_t add(std::span<const ClusterOfLight> clusters, float negligible, std::span<const float> factors,
                       std::span<glm::vec3> filtered) const;
     std::size_t bytes() const;
@@ -46,6 +47,7 @@ class LobeLights {
         float chord;  ///< largest distance of a texel's direction from the axis
         float widest; ///< parameter of the widest lobe
         float peak;   ///< largest value of any of the lobes
+        float least_shape, most_shape;
     };
     void make_groups(const TexelLayout& layout, std::uint32_t begin, std::uint32_t end);
 
