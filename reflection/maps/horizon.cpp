@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kColumns = 97, kRows = 33;
+constexpr int kColumns = HorizonTable::columns, kRows = HorizonTable::rows;
 
 /// Angular scale of a lobe; what a table's row is measured in.
 double width_of(LobeKind kind, double parameter) {
@@ -164,8 +164,10 @@ TwoLookups two_lookups(LobeKind kind, double width) {
 
 } // namespace
 
-HorizonTable::HorizonTable(LobeKind kind, HorizonCorrection correction)
-    : kind_(kind), correction_(correction), cells_(std::size_t(kColumns) * kRows) {
+HorizonTable::HorizonTable(LobeKind kind, HorizonCorrection correction) : kind_(kind), correction_(correction) {
+    if (correction == HorizonCorrection::none)
+        return;
+    cells_.resize(std::size_t(kColumns) * kRows);
     for (int row = 0; row < kRows; ++row) {
         const double width = row_width(kind, row);
         const Lobe lobe{kind, parameter_of_width(kind, width)};

@@ -5,6 +5,7 @@
 #include "common/types.h"
 #include "reflection/maps/lobe.h"
 
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -27,8 +28,8 @@ struct HorizonLookup {
     float share;     ///< that part's share of the lobe's mass
 };
 
-/// A table over (n·r, lobe), made once (some 50 ms); thread-safe. Errors of one and two lookups against the clipped
-/// lobe are in horizon.cpp.
+/// A table over (n·r, lobe), made once (some 30 ms); thread-safe. On a GPU: horizon.glsl. Errors of one and two lookups
+/// against the clipped lobe are in horizon.cpp.
 class HorizonTable {
   public:
     explicit HorizonTable(LobeKind kind, HorizonCorrection correction = HorizonCorrection::two_lookups);
@@ -36,11 +37,15 @@ class HorizonTable {
     /// do. `parameter`: Phong's Λ > 0, GGX's roughness in (0,1].
     HorizonLookup lookup(const glm::vec3& normal, const glm::vec3& mirrored, double parameter) const;
 
+    static constexpr int columns = 97, rows = 33;
+    /// Row by row, a row a lobe's width, a column an elevation of the mirrored direction (horizon.cpp): share; turn
+    /// towards the normal and half the distance of the two lookups, in the lobe's widths; Phong: (Λ+3)/(Λ'+3), GGX:
+    /// α'/α. Empty without a correction.
+    std::span<const glm::vec4> cells() const { return cells_; }
+
   private:
     LobeKind kind_;
     HorizonCorrection correction_;
-    /// share, turn towards the normal and half the distance of the two lookups (in the lobe's widths), ratio of
-    /// widths squared; row by row, one lobe each
     std::vector<glm::vec4> cells_;
 };
 
