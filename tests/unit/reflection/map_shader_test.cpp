@@ -1,5 +1,6 @@
 // Our GLSL on WebGL 2 looks maps up as our own code does: the same texels, the same directions and lobes.
 #include "common/services/random.h"
+#include "reflection/maps/horizon.h"
 #include "reflection/maps/shell_atlas.h"
 #include "reflection/maps/voxel_cube.h"
 #include "tests/support/node.h"
@@ -74,8 +75,10 @@ TEST(MapShader, ShellsAreLookedUpAsOnTheCpu) {
     for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx})
         for (const TexelFilter filter : {TexelFilter::bilinear, TexelFilter::cubic}) {
             const bool ggx = kind == LobeKind::ggx;
-            ShellMap map(
-                {.kind = kind, .least_parameter = ggx ? 0.4 : 1.0, .most_parameter = ggx ? 1.0 : 40.0, .filter = filter});
+            ShellMap map({.kind = kind,
+                          .least_parameter = ggx ? 0.4 : 1.0,
+                          .most_parameter = ggx ? 1.0 : 40.0,
+                          .filter = filter});
             map.set_texels(smooth_texels(map.layout()));
             const ShellAtlas atlas = shell_atlas(map.shells(), map.border());
             const Lookups lookups = ggx ? random_lookups(0.35f, 1) : random_lookups(0, 50);
@@ -123,6 +126,43 @@ TEST(MapShader, VoxelsAreLookedUpAsOnTheCpu) {
     const float largest = largest_difference("voxel_cube.glsl", input, ours);
     EXPECT_LT(255 * largest, 0.5f);
     RecordProperty("largest", std::to_string(255 * largest));
+}
+
+TEST(MapShader, HorizonsAreCorrectedAsOnTheCpu) {
+    if (!browser_is_there())
+        GTEST_SKIP() << "skipped: the package chromium is missing (.ci/setup tests)";
+    const glm::vec3 normal(0, 1, 0);
+    for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx}) {
+        const bool ggx = kind == LobeKind::ggx;
+        const HorizonTable table(kind);
+        const Lookups lookups = ggx ? random_lookups(0.1f, 1) : random_lookups(0.3f, 300);
+        std::vector<float> cells;
+        for (const glm::vec4& cell : table.cells())
+            cells.insert(cells.end(), {cell.x, cell.y, cell.z, cell.w});
+        // A map whose radiance is a plain function of direction and width: what the shader and we have to agree on.
+        const auto map = [&](const glm::vec3& d, float parameter) {
+            return glm::vec3(0.5f + 0.5f * d.x, 0.5f + 0.5f * d.y, ggx ? parameter : 1 / std::sqrt(parameter + 1));
+        };
+        std::vector<glm::vec3> ours;
+        for (std::size_t i = 0; i < lookups.directions.size(); ++i)
+            ours.push_back(
+                filtered_above_horizon(table, normal, lookups.directions[i], double(lookups.parameters[i]), map));
+        json input = input_of(lookups);
+        const std::string width = ggx ? "(p)" : "inversesqrt((p) + 1.0)";
+        input["define"] = "#define HORIZON_GGX " + std::string(ggx ? "1" : "0") +
+                          "\n#define MAP(d, p) vec3(0.5 + 0.5 * (d).xy, " + width +
+                          ")\n#define SUM(h) (0.5 * (h).share * (MAP((h).first, (h).parameter) + "
+                          "MAP((h).second, (h).parameter)))\n#define lookUp(d, p) "
+                          "SUM(horizonLookup(vec3(0.0, 1.0, 0.0), d, p))\n";
+        input["call"] = "lookUp";
+        input["texture"] = {{"name", "horizonTable"},
+                            {"width", HorizonTable::columns},
+                            {"height", HorizonTable::rows},
+                            {"depth", 0},
+                            {"channels", 4},
+                            {"pixels", cells}};
+        EXPECT_LT(largest_difference("horizon.glsl", input, ours), 1e-3f) << ggx;
+    }
 }
 
 } // namespace
