@@ -1,7 +1,7 @@
 // Stockham's self-sorting transform, decimation in frequency: Van Loan 1992, Computational Frameworks for the Fast
-// Fourier Transform, section 1.7. Vector code by Google Highway: compiled once for every instruction set, chosen at run
-// time. Arrays of vectors rule out the sizeless vectors of SVE and RVV; Arm has NEON for it.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+// Fourier Transform, section 1.7.
+#include "common/services/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/directions/batch_fft.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

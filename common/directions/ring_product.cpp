@@ -1,6 +1,5 @@
-// Vector code by Google Highway: compiled once for every instruction set, chosen at run time.
-// Arrays of vectors rule out the sizeless vectors of SVE and RVV; Arm has NEON for it.
-#define HWY_DISABLED_TARGETS (HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128 | HWY_RVV)
+#include "common/services/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "common/directions/ring_product.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

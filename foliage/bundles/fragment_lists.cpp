@@ -1,4 +1,4 @@
-#include "foliage/bundles/instruction_sets.h"
+#include "common/services/instruction_sets.h"
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "foliage/bundles/fragment_lists.cpp"

@@ -1,4 +1,5 @@
-// Vector code by Google Highway: compiled once for every instruction set, chosen at run time.
+#include "common/services/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/maps/lat_long_sums.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

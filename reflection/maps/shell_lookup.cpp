@@ -1,5 +1,6 @@
-// ShellMap's lookup of many directions, by Google Highway: compiled once for every instruction set, chosen at run time.
-// The scalar lookup in shell_map.cpp is its twin.
+// ShellMap's lookup of many directions. The scalar lookup in shell_map.cpp is its twin.
+#include "common/services/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "reflection/maps/shell_lookup.cpp"
 #include <hwy/foreach_target.h> // IWYU pragma: keep

@@ -2,6 +2,7 @@
 #include "common/environment/split_lights.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
+#include "tests/unit/common/random_image.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -10,13 +11,7 @@ using namespace kokage;
 
 namespace {
 
-Image random_image(int width, int height, std::uint64_t seed) {
-    Image image(width, height, 3);
-    Random random(seed);
-    for (float& value : image.pixels)
-        value = random.uniform();
-    return image;
-}
+using test::random_image;
 
 TEST(LatLong, HasTheConventionOfThreeJs) {
     // three.js, equirectUv: u = atan(dir.z, dir.x) / 2pi + 0.5, v (from the bottom) = asin(dir.y) / pi + 0.5.

@@ -6,6 +6,7 @@
 #include "common/environment/lat_long.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
+#include "tests/unit/common/random_image.h"
 
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
@@ -19,13 +20,7 @@ glm::dmat3 some_rotation(double angle, const glm::dvec3& axis) {
     return glm::dmat3(glm::rotate(glm::dmat4(1), angle, glm::normalize(axis)));
 }
 
-Image random_image(int width, int height, std::uint64_t seed) {
-    Image image(width, height, 3);
-    Random random(seed);
-    for (float& value : image.pixels)
-        value = random.uniform();
-    return image;
-}
+using test::random_image;
 
 /// The slow twin: every pixel cut into many parts, each sampled at its centre.
 std::vector<glm::dvec3> slow_project(const Image& image, int bands, int parts) {

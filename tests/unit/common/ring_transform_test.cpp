@@ -6,6 +6,7 @@
 #include "common/environment/lat_long.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
+#include "tests/unit/common/random_image.h"
 
 #include <complex>
 #include <gtest/gtest.h>
@@ -14,13 +15,7 @@ using namespace kokage;
 
 namespace {
 
-Image random_image(int width, int height, std::uint64_t seed) {
-    Image image(width, height, 3);
-    Random random(seed);
-    for (float& value : image.pixels)
-        value = random.uniform();
-    return image;
-}
+using test::random_image;
 
 /// The slow twin of the analysis: every pixel's harmonics, in the frame whose polar axis is +Y.
 std::vector<glm::dvec3> slow_analysis(const Image& image, int bands) {
@@ -196,7 +191,8 @@ TEST(RingTransform, SameBitsWithAnyNumberOfThreads) {
         RingAnalysis(96, 48, bands).transform(image, 1, coefficients);
         std::vector<RingGrid> grids(1, RingGrid(80, 128));
         const RingGrid& grid = grids[0];
-        RingSynthesis(bands, 80, 128).transform(coefficients, std::vector<std::vector<double>>{phong_lobe(bands, 100)}, 1, grids);
+        RingSynthesis(bands, 80, 128)
+            .transform(coefficients, std::vector<std::vector<double>>{phong_lobe(bands, 100)}, 1, grids);
         set_thread_count(0);
         std::vector<glm::vec4> cells;
         for (int y = 0; y < 80; ++y)
