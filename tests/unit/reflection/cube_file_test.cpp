@@ -215,6 +215,34 @@ TEST(CubeFile, KtxParseReadsTheSame) {
     }
 }
 
+TEST(CubeFile, ParseDdsFindsTheSameImages) {
+    const std::string modules = node_modules_with("parse-dds");
+    if (modules.empty())
+        GTEST_SKIP() << "skipped: the npm package parse-dds is missing (.ci/setup tests)";
+    TemporaryFolder folder;
+    const PrefilteredCube cube = smooth_cube({.size = 8, .parameters = {0, 0.2, 0.5, 1}}); // it wants all levels
+    write_dds(folder / "a.dds", cube, TexelFormat::float_rgb);
+    const std::string bytes = read_text(folder / "a.dds");
+    const nlohmann::json all = run_node("parse_dds.js", {modules, (folder / "a.dds").string()});
+    ASSERT_EQ(all.size(), 1u);
+    EXPECT_EQ(all[0]["format"], "rgba32f");
+    EXPECT_EQ(all[0]["cubemap"], true);
+    ASSERT_EQ(all[0]["images"].size(), 24u);
+    for (std::size_t i = 0; i < 24; ++i) { // face after face, each with its levels
+        const nlohmann::json& image = all[0]["images"][i];
+        const PrefilteredCube::Level& level = cube.levels[i % 4];
+        EXPECT_EQ(image["shape"], (std::vector<int>{level.size, level.size}));
+        for (int y = 0; y < level.size; ++y)
+            for (int x = 0; x < level.size; ++x) {
+                glm::vec4 texel;
+                const std::size_t at = image["offset"].get<std::size_t>() + 16 * std::size_t(y * level.size + x);
+                ASSERT_LE(at + 16, bytes.size());
+                std::memcpy(&texel, bytes.data() + at, 16);
+                EXPECT_EQ(texel, glm::vec4(level.texels[cube_texel_index(int(i / 4), x, y, level.size)], 1.f));
+            }
+    }
+}
+
 /// Changes `count` bytes at `at` to a little-endian number.
 void put(std::string& bytes, std::size_t at, std::uint64_t value, std::size_t count = 4) {
     for (std::size_t i = 0; i < count; ++i)
