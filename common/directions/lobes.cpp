@@ -2,6 +2,7 @@
 #include "common/directions/legendre.h"
 #include "common/types.h"
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
@@ -91,21 +92,26 @@ std::vector<double> ggx_lobe(int bands, double roughness) {
     const double x = ggx_falloff(roughness), mass = ggx_mass(x);
     std::fill(k.begin() + 1, k.end(), 0.0);
     const std::vector<double> borders = ggx_pieces(x, bands);
-    static const std::vector<QuadratureNode> rule = gauss_legendre(24);
+    constexpr int nodes = 24;
+    using Nodes = Eigen::Array<double, nodes, 1>; // together, as vectors
+    static const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
     for (std::size_t piece = 1; piece < borders.size(); ++piece) {
         const double half = 0.5 * (borders[piece] - borders[piece - 1]),
                      middle = 0.5 * (borders[piece] + borders[piece - 1]);
-        for (const QuadratureNode& node : rule) {
-            const double angle = middle + half * node.x, half_sine = std::sin(0.5 * angle);
-            const double w = 2 * half_sine * half_sine, fall = 1 + x * w; // w = 1 - t
-            const double weight = half * node.weight * std::sin(angle) * (1 - w) / (fall * fall * mass);
-            // Bonnet's recurrence for d_l = 1 - P_l(t), by its steps: keeps its digits where t is almost 1.
-            double d = w, step = w;
-            for (int l = 1; l < bands; ++l) {
-                k[std::size_t(l)] += weight * (1 - d);
-                step = (l * step + (2 * l + 1.0) * w * (1 - d)) / (l + 1.0);
-                d += step;
-            }
+        Nodes w, weight; // w = 1 - t
+        for (int i = 0; i < nodes; ++i) {
+            const double angle = middle + half * rule[std::size_t(i)].x, half_sine = std::sin(0.5 * angle);
+            w[i] = 2 * half_sine * half_sine;
+            const double fall = 1 + x * w[i];
+            weight[i] = half * rule[std::size_t(i)].weight * std::sin(angle) * (1 - w[i]) / (fall * fall * mass);
+        }
+        // Bonnet's recurrence for d_l = 1 - P_l(t), by its steps: keeps its digits where t is almost 1.
+        Nodes d = w, step = w;
+        for (int l = 1; l < bands; ++l) {
+            const Nodes legendre = 1 - d;
+            k[std::size_t(l)] += (weight * legendre).sum();
+            step = l / (l + 1.0) * step + (2 * l + 1) / (l + 1.0) * w * legendre;
+            d += step;
         }
     }
     return k;

@@ -23,7 +23,8 @@ double phong_lobe_value(double exponent, double squared_distance);
 /// in Unreal Engine 4"), weighted by n.l as prefiltered maps of engines are, and normalised to 1:
 ///     h(t) ~ D(cos(theta/2)) max(t, 0) ~ max(t, 0) / (1 + x (1-t))^2,   x = (1 - alpha^2)/(2 alpha^2).
 /// roughness in [0, 1]; 1 is the cosine lobe, 0 the mirror (all k_l = 1; it has no value).
-/// Coefficients by Gauss-Legendre quadrature graded towards the peak, to 1e-12. Takes about 3 bands^2 flops x 5.
+/// Coefficients by Gauss-Legendre quadrature graded towards the peak: error 1e-14 up to 2000 bands. Time grows with
+/// bands^2: 1.5 ms for 1024.
 std::vector<double> ggx_lobe(int bands, double roughness);
 /// Its value between unit directions a and b, from their squared distance |a-b|^2. roughness > 0.
 double ggx_lobe_value(double roughness, double squared_distance);

@@ -20,7 +20,8 @@ struct GlossyObject {
 /// All meshes of a scene as one object. `z_up`: turned from +Z up to +Y up (x, y, z -> x, z, -y).
 GlossyObject glossy_object(const MeshScene& scene, bool z_up);
 
-/// What a camera sees of an object: covered pixels only, in raster order.
+/// What a camera sees of an object: covered pixels only, in raster order. At its rim a smoothed normal may look away
+/// from the camera; the mirrored direction then lies below the horizon, and eq 2 leaves little or nothing of the lobe.
 struct SurfacePixels {
     int width = 0, height = 0;        ///< of the picture
     std::vector<std::uint32_t> pixel; ///< y width + x
