@@ -9,7 +9,7 @@ namespace kokage {
 /// in double. A pixel whose weight is below 1e-17 of the lobe's peak is left out. Where the image is so coarse beside
 /// the lobe that all pixels are, weights are taken relative to the nearest pixel's, which is their limit; where all of
 /// them are beyond the lobe's right angle, the nearest pixel's radiance is taken. Distant lights are added with the
-/// lobe's exact integral over their discs (lobe_over_cone.h). Cost: about 2 ns a pixel of the hemisphere a texel.
+/// lobe's exact integral over their discs (lobe_over_cone.h). Cost: about 2.5 ns a pixel of the hemisphere a texel.
 std::unique_ptr<Baker> brute_force_baker(const TexelLayout& layout, int image_width, int image_height);
 
 /// One texel of it, pixel by pixel with nothing left out: the obvious twin.

@@ -23,7 +23,8 @@ struct TeapotSettings {
 /// "shells-uncorrected", "cube", "exact-lookup" (no container: what the correction alone is wrong by) and "cube-paper"
 /// (uncorrected, and λ r interpolated between vertices as a 3D texture's coordinate); of mixed also "shells-vertex" (λ
 /// interpolated between vertices, and so in its reference). Errors are over covered pixels, after clamping to [0,1].
-/// cpu_seconds is the picture's. Throws InputError if a file is missing, Stopped.
+/// cpu_seconds is the picture's, setup_cpu_seconds the map's set-up and bake. Throws InputError if a file is missing,
+/// Stopped.
 void measure_teapot(const TeapotSettings& settings, const std::function<void(const ReflectionRecord&)>& take,
                     Progress& progress = silent_progress());
 
