@@ -108,7 +108,7 @@ class OrderTable {
 } // namespace
 
 RingTables::RingTables(int bands, int rings, std::span<const double> polar, std::span<const double> weights,
-                       bool spline, Order order)
+                       bool spline, Order order, std::span<const float> stored)
     : bands_(bands), rings_(rings) {
     if (bands < 1 || rings < 1 || polar.size() != std::size_t(pairs()) ||
         (!weights.empty() && weights.size() != polar.size()))
@@ -144,6 +144,12 @@ RingTables::RingTables(int bands, int rings, std::span<const double> polar, std:
                     place(batch, m, parity);
     }
     values_.resize(size);
+    if (!stored.empty()) {
+        if (stored.size() < size)
+            throw std::invalid_argument("RingTables: the stored tables are too short");
+        std::copy_n(stored.begin(), size, values_.begin());
+        return;
+    }
     parallel_blocks(std::size_t(bands), 4, [&](std::size_t begin, std::size_t end) {
         OrderTable functions(bands, rings, polar, weights);
         for (int m = int(begin); m < int(end); ++m) {

@@ -57,9 +57,9 @@ RingCoefficients::RingCoefficients(int bands) : bands_(bands) {
     values_.resize(size);
 }
 
-RingAnalysis::RingAnalysis(int width, int height, int bands)
+RingAnalysis::RingAnalysis(int width, int height, int bands, std::span<const float> stored_tables)
     : width_(width), tables_(bands, height, row_polar_angles(height), row_solid_angles(width, height), false,
-                             RingTables::Order::along_bands),
+                             RingTables::Order::along_bands, stored_tables),
       fft_(width) {}
 
 void RingAnalysis::transform(const Image& image, float scale, RingCoefficients& coefficients) const {
@@ -150,8 +150,9 @@ glm::vec3 RingGrid::lookup(const glm::dvec3& direction) const {
     return glm::vec3(sum);
 }
 
-RingSynthesis::RingSynthesis(int bands, int rings, int columns)
-    : tables_(bands, rings, row_polar_angles(rings), {}, true, RingTables::Order::along_rings), fft_(columns) {
+RingSynthesis::RingSynthesis(int bands, int rings, int columns, std::span<const float> stored_tables)
+    : tables_(bands, rings, row_polar_angles(rings), {}, true, RingTables::Order::along_rings, stored_tables),
+      fft_(columns) {
     if (columns % 2 != 0 || columns < 2 * bands - 1)
         throw std::invalid_argument("RingSynthesis: columns must be even and at least twice the bands");
     for (int m = 0; m < bands; ++m)

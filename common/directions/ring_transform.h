@@ -8,7 +8,7 @@
 // atan2(z, x).
 #include "common/directions/batch_fft.h"
 #include "common/scene/image.h"
-#include "common/services/uninitialized_vector.h"
+#include "common/services/large_vector.h"
 #include "common/types.h"
 
 #include <cstddef>
@@ -50,8 +50,10 @@ class RingTables {
     /// `polar`: polar angles of the northern rings, ascending, the equator (pi/2) last if `rings` is odd. `weights`:
     /// what each ring's functions are multiplied by; empty = 1. `spline`: the functions' coefficients of kRingSpline
     /// along the meridian instead of their values; the rings must then be (j + 1/2) pi / rings.
+    /// `stored` begins with what values() of such tables were, which saves making them; empty = make them. Throws
+    /// std::invalid_argument if it is too short.
     RingTables(int bands, int rings, std::span<const double> polar, std::span<const double> weights, bool spline,
-               Order order);
+               Order order, std::span<const float> stored = {});
     int bands() const { return bands_; }
     int rings() const { return rings_; }
     int pairs() const { return (rings_ + 1) / 2; } ///< of a northern and a southern ring; the equator is its own
@@ -63,24 +65,24 @@ class RingTables {
     const float* table(int batch, int m, int parity) const {
         return values_.data() + first_[std::size_t((batch * bands_ + m) * 2 + parity)];
     }
-    std::size_t bytes() const { return values_.size() * sizeof(float); }
+    std::span<const float> values() const { return values_; }
 
   private:
     int bands_, rings_;
     std::vector<int> orders_;
     std::vector<std::size_t> first_;
-    UninitializedVector<float> values_;
+    LargeVector<float> values_;
 };
 
 /// From a lat-long image to coefficients: every pixel is a point of light at its centre with its exact solid angle, as
 /// sums over pixels take it. (projection.h integrates over pixels instead.)
 class RingAnalysis {
   public:
-    RingAnalysis(int width, int height, int bands);
+    RingAnalysis(int width, int height, int bands, std::span<const float> stored_tables = {});
     /// `image` has that size and at least 3 channels; values are multiplied by `scale` first. The same bits with any
     /// number of threads.
     void transform(const Image& image, float scale, RingCoefficients& coefficients) const;
-    std::size_t bytes() const { return tables_.bytes(); }
+    std::span<const float> tables() const { return tables_.values(); }
 
   private:
     int width_;
@@ -103,7 +105,7 @@ inline constexpr float kRingSpline[4][4] = {{-1 / 6.f, 1 / 2.f, -1 / 2.f, 1 / 6.
 struct RingGrid {
     static constexpr int kRowGuard = 2, kColumnGuard = 4;
     int rings = 0, columns = 0;
-    UninitializedVector<glm::vec4> cells; ///< rgb and an unused fourth
+    LargeVector<glm::vec4> cells; ///< rgb and an unused fourth
 
     RingGrid(int rings_, int columns_);
     int stride() const { return columns + 2 * kColumnGuard; }
@@ -122,7 +124,7 @@ struct RingGrid {
 class RingSynthesis {
   public:
     /// columns even and >= 2 bands - 1.
-    RingSynthesis(int bands, int rings, int columns);
+    RingSynthesis(int bands, int rings, int columns, std::span<const float> stored_tables = {});
     int bands() const { return tables_.bands(); }
     int rings() const { return tables_.rings(); }
     int columns() const { return fft_.length(); }
@@ -132,7 +134,7 @@ class RingSynthesis {
     /// same bits with any number of threads.
     void transform(const RingCoefficients& coefficients, std::span<const std::vector<double>> zonals, float scale,
                    std::span<RingGrid> grids) const;
-    std::size_t bytes() const { return tables_.bytes(); }
+    std::span<const float> tables() const { return tables_.values(); }
 
   private:
     void transform_batch(const RingCoefficients& coefficients, std::span<const float> zonals, std::size_t bands_used,

@@ -1,6 +1,7 @@
 #include "reflection/maps/spectral_baker.h"
 #include "common/environment/split_lights.h"
 #include "common/services/error.h"
+#include "common/services/large_vector.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
 #include "reflection/maps/brute_force_baker.h"
@@ -8,6 +9,7 @@
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/spectral_plan.h"
 #include "reflection/maps/spectral_read.h"
+#include "reflection/maps/stored_setup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +21,8 @@ namespace kokage {
 namespace {
 
 constexpr std::size_t kReadBlock = 4096;
+constexpr double kLeastShare = 1e-13; ///< of a narrow lobe's peak, of pixels that count
+constexpr double kEvenContrast = 4;   ///< brightest pixel over mean, up to which an image has no bright parts
 
 std::string text(const char* format, double value) {
     char buffer[64];
@@ -28,21 +32,26 @@ std::string text(const char* format, double value) {
 
 struct Range {
     glm::vec3 least, most;
+    double mean; ///< of all channels over the sphere
 };
 
 /// Per channel; throws if a pixel is negative or no number.
 Range range_of(const Image& image) {
-    Range range{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(0)};
-    for (int y = 0; y < image.height; ++y)
+    Range range{glm::vec3(std::numeric_limits<float>::max()), glm::vec3(0), 0};
+    for (int y = 0; y < image.height; ++y) {
+        double sum = 0;
         for (int x = 0; x < image.width; ++x) {
             const float* p = image.at(x, y);
             const glm::vec3 pixel(p[0], p[1], p[2]);
-            if (!(pixel.r >= 0 && pixel.g >= 0 && pixel.b >= 0 && std::isfinite(pixel.r + pixel.g + pixel.b)))
+            if (!(pixel.r >= 0 && pixel.g >= 0 && pixel.b >= 0 && std::isfinite(std::max({p[0], p[1], p[2]}))))
                 throw InputError("baking: the pixel at " + std::to_string(x) + ", " + std::to_string(y) +
                                  " is negative or not a finite number: repair the image first");
             range.least = glm::min(range.least, pixel);
             range.most = glm::max(range.most, pixel);
+            sum += double(p[0]) + double(p[1]) + double(p[2]);
         }
+        range.mean += sum / 3 * pixel_solid_angle(y, image.width, image.height) / (4 * kPiDouble);
+    }
     return range;
 }
 
@@ -64,18 +73,23 @@ class SpectralBaker final : public Baker {
 
   private:
     void place_texels();
-    void normalize();
-    void filter_smooth(const Image& image, float most, std::span<glm::vec3> filtered, WorkReport& report,
+    void normalize(std::span<const float> stored);
+    void make_tables(std::span<const float>& stored, Progress& progress);
+    std::vector<std::span<const float>> tables() const;
+    std::uint64_t identity() const;
+    void store(const std::filesystem::path& path, WorkReport& report) const;
+    void filter_smooth(const Image& image, const Range& range, std::span<glm::vec3> filtered, WorkReport& report,
                        Progress& progress);
     void add_lights(const Image& image, std::span<const ClusterOfLight> in_image, std::span<const DistantLight> others,
                     std::span<glm::vec3> filtered, WorkReport& report);
     void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report);
 
+    Stopwatch watch_; ///< runs from the beginning of the set-up
     TexelLayout layout_;
     int width_, height_;
     SpectralSettings settings_;
     SpectralPlan plan_;
-    std::vector<TexelPlace> places_;
+    LargeVector<TexelPlace> places_;
     std::vector<std::uint32_t> direct_; ///< texels that are summed pixel by pixel
     std::optional<RingAnalysis> analysis_;
     /// Neighbouring shells with grids of one size.
@@ -84,8 +98,8 @@ class SpectralBaker final : public Baker {
         RingSynthesis synthesis;
     };
     std::vector<ShellGroup> groups_;
-    std::vector<std::vector<double>> zonals_; ///< of each shell
-    std::vector<RingGrid> grids_;             ///< of each shell
+    std::vector<std::vector<double>> zonals_, even_zonals_; ///< of each shell; those of images without bright parts
+    std::vector<RingGrid> grids_;                           ///< of each shell
     LobeLights lights_;
     std::vector<float> factors_; ///< of each texel: 1 over the sum of its weights, 0 where it is summed pixel by pixel
     double least_spread_ = 1;
@@ -95,37 +109,85 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
                              WorkReport& report, Progress& progress)
     : layout_(layout), width_(width), height_(height), settings_(settings),
       plan_(layout, width, height, settings.tolerance), lights_(layout_) {
-    const Stopwatch watch;
     progress.begin("preparing harmonics", plan_.shells().size() + 1);
-    if (!plan_.shells().empty())
-        analysis_.emplace(width, height, plan_.bands());
-    progress.advance(1);
-    std::size_t bytes = analysis_ ? analysis_->bytes() : 0;
-    const std::vector<SpectralShell>& shells = plan_.shells();
-    for (std::size_t begin = 0, end = 0; begin < shells.size(); begin = end) {
-        progress.throw_if_stopped();
-        std::size_t bands = 0;
-        for (;
-             end < shells.size() && end - begin < RingSynthesis::kMostGrids && shells[end].rings == shells[begin].rings;
-             ++end) {
-            bands = std::max(bands, shells[end].zonal.size());
-            zonals_.push_back(shells[end].zonal);
-            grids_.emplace_back(shells[end].rings, 2 * shells[end].rings);
-            bytes += grids_.back().cells.size() * sizeof(glm::vec4);
-        }
-        groups_.push_back(
-            {begin, end - begin, RingSynthesis(int(bands), shells[begin].rings, 2 * shells[begin].rings)});
-        bytes += groups_.back().synthesis.bytes();
-        progress.advance(end - begin);
-    }
+    const std::filesystem::path& path = settings.stored_setup;
+    std::error_code ignored;
+    const bool is_stored = !path.empty() && std::filesystem::exists(path, ignored);
+    std::vector<float> stored;
+    if (is_stored)
+        stored = read_setup(path, identity());
+    std::span<const float> rest(stored);
+    make_tables(rest, progress);
     place_texels();
-    normalize();
-    bytes += lights_.bytes() + places_.size() * sizeof(TexelPlace) + direct_.size() * sizeof(std::uint32_t);
-    report.stages.push_back({"preparing harmonics", watch.cpu(), watch.wall()});
+    normalize(rest);
+    report.stages.push_back({is_stored ? "reading the set-up" : "preparing harmonics", watch_.cpu(), watch_.wall()});
+    if (!path.empty() && !is_stored)
+        store(path, report);
+    std::size_t bytes = lights_.bytes() + places_.size() * sizeof(TexelPlace) + factors_.size() * sizeof(float);
+    for (const RingGrid& grid : grids_)
+        bytes += grid.cells.size() * sizeof(glm::vec4);
+    for (const std::span<const float> array : tables())
+        bytes += array.size_bytes();
     report.counts.push_back({"bands", std::uint64_t(plan_.shells().empty() ? 0 : plan_.bands())});
     report.counts.push_back({"spectral shells", plan_.shells().size()});
     report.counts.push_back({"texels summed pixel by pixel", direct_.size()});
     report.counts.push_back({"prepared bytes", bytes});
+}
+
+/// Whatever the tables and factors depend on.
+std::uint64_t SpectralBaker::identity() const {
+    SetupIdentity identity;
+    identity.add_value(int(layout_.kind));
+    identity.add(std::as_bytes(std::span(layout_.directions)));
+    identity.add(std::as_bytes(std::span(layout_.parameters)));
+    identity.add_value(width_);
+    identity.add_value(height_);
+    identity.add_value(settings_.tolerance);
+    for (const SpectralShell& shell : plan_.shells()) {
+        identity.add_value(shell.zonal.size());
+        identity.add_value(shell.rings);
+    }
+    return identity.value();
+}
+
+void SpectralBaker::make_tables(std::span<const float>& stored, Progress& progress) {
+    const std::vector<SpectralShell>& shells = plan_.shells();
+    if (shells.empty())
+        return;
+    analysis_.emplace(width_, height_, plan_.bands(), stored);
+    stored = stored.subspan(std::min(stored.size(), analysis_->tables().size()));
+    progress.advance(1);
+    for (std::size_t begin = 0, end = 0; begin < shells.size(); begin = end) {
+        progress.throw_if_stopped();
+        const int rings = shells[begin].rings;
+        std::size_t bands = 0;
+        for (; end < shells.size() && end - begin < RingSynthesis::kMostGrids && shells[end].rings == rings; ++end) {
+            bands = std::max(bands, shells[end].zonal.size());
+            zonals_.push_back(shells[end].zonal);
+            even_zonals_.emplace_back(shells[end].zonal.begin(), shells[end].zonal.begin() + shells[end].even_bands);
+            grids_.emplace_back(rings, 2 * rings);
+        }
+        groups_.push_back({begin, end - begin, RingSynthesis(int(bands), rings, 2 * rings, stored)});
+        stored = stored.subspan(std::min(stored.size(), groups_.back().synthesis.tables().size()));
+        progress.advance(end - begin);
+    }
+}
+
+std::vector<std::span<const float>> SpectralBaker::tables() const {
+    std::vector<std::span<const float>> arrays;
+    if (analysis_)
+        arrays.push_back(analysis_->tables());
+    for (const ShellGroup& group : groups_)
+        arrays.push_back(group.synthesis.tables());
+    return arrays;
+}
+
+void SpectralBaker::store(const std::filesystem::path& path, WorkReport& report) const {
+    const Stopwatch watch;
+    std::vector<std::span<const float>> arrays = tables();
+    arrays.emplace_back(factors_);
+    write_setup(path, identity(), arrays);
+    report.stages.push_back({"writing the set-up", watch.cpu(), watch.wall()});
 }
 
 void SpectralBaker::place_texels() {
@@ -144,35 +206,40 @@ void SpectralBaker::place_texels() {
 
 /// The sum over pixels is divided by the sum of their weights ([R] eq 9), which is 1 but near the poles, where a row of
 /// pixels stands for a whole cap, and where pixels are coarse: the same bake of a white image.
-void SpectralBaker::normalize() {
+void SpectralBaker::normalize(std::span<const float> stored) {
     if (places_.empty())
         return;
-    Image white(width_, height_, 3);
-    std::fill(white.pixels.begin(), white.pixels.end(), 1.f);
-    std::vector<glm::vec3> sums(layout_.size());
-    WorkReport unused;
-    filter_smooth(white, 1, sums, unused, silent_progress());
-    factors_.assign(layout_.size(), 0.f);
-    for (TexelPlace& place : places_) {
-        factors_[place.texel] = 1 / sums[place.texel].g;
+    factors_.assign(stored.begin(), stored.end());
+    if (factors_.empty()) {
+        Image white(width_, height_, 3);
+        std::fill(white.pixels.begin(), white.pixels.end(), 1.f);
+        std::vector<glm::vec3> sums(layout_.size());
+        WorkReport unused;
+        filter_smooth(white, {glm::vec3(1), glm::vec3(1), 0}, sums, unused, silent_progress());
+        factors_.assign(layout_.size(), 0.f);
+        for (const TexelPlace& place : places_)
+            factors_[place.texel] = 1 / sums[place.texel].g;
+    }
+    for (TexelPlace& place : places_)
         for (float& weight : place.weights)
             weight *= factors_[place.texel];
-    }
 }
 
-void SpectralBaker::filter_smooth(const Image& image, float most, std::span<glm::vec3> filtered, WorkReport& report,
-                                  Progress& progress) {
+void SpectralBaker::filter_smooth(const Image& image, const Range& range, std::span<glm::vec3> filtered,
+                                  WorkReport& report, Progress& progress) {
     if (places_.empty())
         return;
     Stopwatch watch;
-    const float scale = scale_to_one(most);
+    const float most = largest(range.most), scale = scale_to_one(most);
+    const bool even = double(most) <= kEvenContrast * range.mean;
     RingCoefficients coefficients(plan_.bands());
     analysis_->transform(image, scale, coefficients);
     report.stages.push_back({"harmonics of the image", watch.cpu(), watch.wall()});
     watch.restart();
     for (const ShellGroup& group : groups_) {
         progress.throw_if_stopped();
-        group.synthesis.transform(coefficients, std::span(zonals_).subspan(group.first, group.count), 1,
+        group.synthesis.transform(coefficients,
+                                  std::span(even ? even_zonals_ : zonals_).subspan(group.first, group.count), 1,
                                   std::span(grids_).subspan(group.first, group.count));
     }
     report.stages.push_back({"filtering on rings", watch.cpu(), watch.wall()});
@@ -198,8 +265,9 @@ void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filte
     parallel_blocks(direct_.size(), 64, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t texel = direct_[i];
-            filtered[texel] = glm::vec3(filtered_image(planes, {layout_.kind, double(layout_.parameters[texel])},
-                                                       glm::normalize(glm::dvec3(layout_.directions[texel])), 1e-9));
+            filtered[texel] =
+                glm::vec3(filtered_image(planes, {layout_.kind, double(layout_.parameters[texel])},
+                                         glm::normalize(glm::dvec3(layout_.directions[texel])), kLeastShare));
         }
     });
     report.stages.push_back({"summing pixel by pixel", watch.cpu(), watch.wall()});
@@ -256,7 +324,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
         report.counts.push_back({"lights split off", split.lights.size()});
         report.counts.push_back({"pixels of lights", pixels});
         report.stages.push_back({"splitting lights off", watch.cpu(), watch.wall()});
-        filter_smooth(split.remainder, largest(range_of(split.remainder).most), filtered, report, progress);
+        filter_smooth(split.remainder, range_of(split.remainder), filtered, report, progress);
         filter_direct(image, filtered, report);
     }
     add_lights(image, lights, surroundings.distant_lights, filtered, report);

@@ -14,9 +14,9 @@ constexpr int kMostBands = 512;
 constexpr double kSharedRings = 1.35; ///< grids up to so much finer than needed
 constexpr double kLeastPixels = 0.7;  ///< standard width of a lobe in harmonics
 constexpr double kLargestOverRms = 5;
-// Shares of the tolerance, chosen by measuring each part's error: what the bands leave out rings all over the sphere,
-// and is seen in the dark; what grids blur stays beside the bright.
-constexpr double kBandsShare = 0.08, kGridsShare = 0.6;
+// Shares of the tolerance, chosen by measuring each part's error. What grids blur stays beside the bright; what the
+// bands leave out rings all over the sphere, and is seen in the dark if there is anything bright.
+constexpr double kGridsShare = 0.6, kEvenBandsShare = 0.6, kBandsShare = 0.08;
 constexpr double kStepAtTolerance = 0.2, kToleranceOfStep = 1e-4; ///< between shells, in the logarithm of the width
 
 /// A length that transforms fast, and even.
@@ -57,8 +57,8 @@ double band_variance(int l, double noise) {
 
 } // namespace
 
-int SpectralPlan::bands_needed(const Lobe& lobe) const {
-    const double allowed = kBandsShare * tolerance_ / kLargestOverRms;
+int SpectralPlan::bands_needed(const Lobe& lobe, double share) const {
+    const double allowed = share * tolerance_ / kLargestOverRms;
     for (int tried = std::min(64, most_bands_);; tried = std::min(2 * tried, most_bands_)) {
         const std::vector<double> k = lobe_coefficients(lobe, tried);
         double tail = 0;
@@ -91,7 +91,8 @@ int SpectralPlan::rings_needed(std::span<const double> zonal) const {
 }
 
 void SpectralPlan::add_shell(const Lobe& lobe) {
-    SpectralShell shell{lobe, lobe_coefficients(lobe, bands_needed(lobe)), 0};
+    SpectralShell shell{lobe, lobe_coefficients(lobe, bands_needed(lobe, kBandsShare)), 0, 0};
+    shell.even_bands = bands_needed(lobe, kEvenBandsShare);
     shell.rings = rings_needed(shell.zonal);
     shells_.push_back(std::move(shell));
 }
@@ -103,18 +104,25 @@ SpectralPlan::SpectralPlan(const TexelLayout& layout, int image_width, int image
     // The narrowest lobe that the bands suffice for: the width at which they no longer do, by bisection. (Very wide
     // Phong lobes need many bands too, for the edge of their half sphere; those are cut off.)
     auto suffices = [&](double width) {
-        return bands_needed(lobe_of_spread(kind_, std::exp(width))) < most_bands_ - 1;
+        return bands_needed(lobe_of_spread(kind_, std::exp(width)), kBandsShare) < most_bands_ - 1;
     };
     double narrow = std::log(1e-9), wide = std::log(0.1);
+    if (!layout.parameters.empty()) {
+        const auto [least, most] = std::minmax_element(layout.parameters.begin(), layout.parameters.end());
+        const double needed = std::min({wide, lobe_width(*least), lobe_width(*most)});
+        if (suffices(needed)) // most often: nothing narrower is asked for
+            narrow = wide = needed;
+    }
     if (!suffices(wide))
         narrow = wide = std::numeric_limits<double>::infinity();
-    while (wide - narrow > 1e-3) {
+    while (wide - narrow > 1e-2) {
         const double middle = 0.5 * (narrow + wide);
         (suffices(middle) ? wide : narrow) = middle;
     }
     // Nor one that is not wider than the pixels are apart.
     const double pixel = std::max(kPiDouble / image_height, 2 * kPiDouble / image_width);
-    narrowest_ = float(lobe_of_spread(kind_, std::exp(std::max(wide, 2 * std::log(kLeastPixels * pixel)))).parameter);
+    narrowest_ =
+        float(lobe_of_spread(kind_, std::exp(std::max(wide - 1e-3, 2 * std::log(kLeastPixels * pixel)))).parameter);
     add_shells(layout.parameters);
     share_grids();
 }

@@ -14,6 +14,7 @@ namespace kokage {
 struct SpectralShell {
     Lobe lobe;
     std::vector<double> zonal; ///< its coefficients; their number is the bands that it needs
+    int even_bands = 0;        ///< that suffice where no part of the image is many times brighter than its mean
     int rings = 0; ///< of its grid; twice as many columns; up to RingSynthesis::kMostGrids neighbours share it
 };
 
@@ -45,7 +46,7 @@ class SpectralPlan {
 
   private:
     double lobe_width(float parameter) const; ///< logarithm of its variance
-    int bands_needed(const Lobe& lobe) const;
+    int bands_needed(const Lobe& lobe, double share) const;
     int rings_needed(std::span<const double> zonal) const;
     void add_shell(const Lobe& lobe);
     void add_shells(const std::vector<float>& parameters);

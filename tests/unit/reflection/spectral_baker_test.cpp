@@ -11,8 +11,13 @@
 #include "reflection/maps/spectral_read.h"
 
 #include <cmath>
+#include <filesystem>
+#include <fstream>
 #include <gtest/gtest.h>
+#include <iterator>
 #include <limits>
+#include <string>
+#include <unistd.h>
 
 using namespace kokage;
 
@@ -254,6 +259,114 @@ TEST(SpectralBaker, SameBitsWithAnyNumberOfThreadsAndFrameAfterFrame) {
     baker->bake(other, filtered, report);
     baker->bake(environment, filtered, report);
     EXPECT_EQ(filtered, one);
+}
+
+/// A folder of its own that goes away.
+struct TemporaryFolder {
+    std::filesystem::path path =
+        std::filesystem::temp_directory_path() / ("kokage-spectral-" + std::to_string(::getpid()));
+    TemporaryFolder() { std::filesystem::create_directories(path); }
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        std::filesystem::remove_all(path, ignored);
+    }
+};
+
+std::string refusal(const TexelLayout& layout, int width, int height, const SpectralSettings& settings) {
+    WorkReport report;
+    try {
+        spectral_baker(layout, width, height, settings, report);
+    } catch (const InputError& error) {
+        return error.what();
+    }
+    return "";
+}
+
+TEST(SpectralBaker, AStoredSetupGivesTheSameBits) {
+    const TemporaryFolder folder;
+    const SpectralSettings settings{1e-3, folder.path / "set-up"};
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 300, 500);
+    const Environment environment = surroundings(noise(64, 32, 2));
+    const std::vector<glm::vec3> made = bake(layout, environment, settings).filtered;
+    ASSERT_TRUE(std::filesystem::exists(settings.stored_setup));
+    const Baked again = bake(layout, environment, settings);
+    EXPECT_EQ(again.filtered, made);
+    EXPECT_EQ(again.report.stages.front().name, "reading the set-up");
+    EXPECT_EQ(bake(layout, environment, {1e-3, {}}).filtered, made);
+}
+
+TEST(SpectralBaker, RefusesADamagedOrForeignSetupByName) {
+    const TemporaryFolder folder;
+    const SpectralSettings settings{1e-3, folder.path / "set-up"};
+    const TexelLayout layout = scattered(LobeKind::phong, 1, 100, 20);
+    ASSERT_EQ(refusal(layout, 32, 16, settings), "");
+    ASSERT_EQ(refusal(layout, 32, 16, settings), "");
+    auto expect_refused = [&](const TexelLayout& wanted, int width, const SpectralSettings& with, const char* why) {
+        const std::string told = refusal(wanted, width, 16, with);
+        EXPECT_NE(told.find(why), std::string::npos) << told;
+        EXPECT_NE(told.find(settings.stored_setup.string()), std::string::npos) << told;
+    };
+    expect_refused(layout, 64, settings, "another size");
+    expect_refused(layout, 32, {1e-2, settings.stored_setup}, "tolerance");
+    TexelLayout other = layout;
+    other.parameters[3] *= 1.001f;
+    expect_refused(other, 32, settings, "another size, lobe");
+
+    std::ifstream in(settings.stored_setup, std::ios::binary);
+    const std::string whole((std::istreambuf_iterator<char>(in)), {});
+    auto write = [&](const std::string& bytes) {
+        std::ofstream(settings.stored_setup, std::ios::binary | std::ios::trunc) << bytes;
+    };
+    write(whole.substr(0, whole.size() - 4));
+    expect_refused(layout, 32, settings, "truncated");
+    write(whole.substr(0, 20));
+    expect_refused(layout, 32, settings, "no set-up");
+    write(whole + "1234");
+    expect_refused(layout, 32, settings, "altered");
+    for (const std::size_t place :
+         {std::size_t(8), std::size_t(17), std::size_t(30), whole.size() / 2, whole.size() - 1}) {
+        std::string altered = whole;
+        altered[place] = char(altered[place] ^ 1);
+        write(altered);
+        expect_refused(layout, 32, settings, place == 8 ? "version" : place == 30 ? "truncated" : "altered");
+    }
+    write("");
+    expect_refused(layout, 32, settings, "no set-up");
+    write(whole);
+    EXPECT_EQ(refusal(layout, 32, 16, settings), "");
+}
+
+TEST(LobeLights, AreTheLobesOneByOne) {
+    Random random(4);
+    for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx}) {
+        const TexelLayout layout =
+            kind == LobeKind::phong ? scattered(kind, 0.3, 5000, 3000) : scattered(kind, 0.05, 1, 3000);
+        std::vector<ClusterOfLight> clusters(7);
+        for (ClusterOfLight& cluster : clusters) {
+            DistantLight light;
+            light.direction = some_direction(random);
+            for (int i = 0; i < 20; ++i)
+                light.texels.push_back({glm::normalize(light.direction + 0.05f * some_direction(random)),
+                                        glm::vec3(random.uniform(), random.uniform(), random.uniform()), 0});
+            cluster = cluster_of(light, 1e-4);
+        }
+        std::vector<float> factors;
+        for (std::size_t i = 0; i < layout.size(); ++i)
+            factors.push_back(0.5f + random.uniform());
+        std::vector<glm::vec3> slow(layout.size(), glm::vec3(1)), fast = slow;
+        for (std::size_t i = 0; i < layout.size(); ++i)
+            for (const ClusterOfLight& cluster : clusters)
+                for (const PointOfLight& point : cluster.points) {
+                    const glm::dvec3 between = glm::dvec3(point.direction) - glm::dvec3(layout.directions[i]);
+                    slow[i] += factors[i] * point.irradiance *
+                               float(lobe_value({kind, double(layout.parameters[i])}, glm::dot(between, between)));
+                }
+        const std::uint64_t lobes = LobeLights(layout).add(clusters, 1e-5f, factors, fast);
+        EXPECT_LT(errors(fast, slow).largest_relative, 1e-4) << lobe_kind_name(kind);
+        EXPECT_GT(lobes, 1000u);
+        // Narrow lobes are out of most lights' reach.
+        EXPECT_LT(lobes, layout.size() * 7 * 20 * (kind == LobeKind::phong ? 7 : 10) / 10);
+    }
 }
 
 TEST(ReadTexels, IsTheSplineThere) {
