@@ -69,11 +69,11 @@ class GroundSearch {
     }
 
     std::uint16_t cell_of_texel(std::size_t texel) const {
-        if (texel >= GroundGrid::kTexels)
-            return std::uint16_t(ground_.far_cell());
         const GroundGrid& grid = *transport_.ground;
-        const glm::dvec3 scaled(grid.low.x + (float(texel % GroundGrid::kSize) + 0.5f) * grid.texel, 0,
-                                grid.low.y + (float(texel / GroundGrid::kSize) + 0.5f) * grid.texel);
+        if (texel >= grid.texels())
+            return std::uint16_t(ground_.far_cell());
+        const glm::vec2 centre = grid.centre_of(std::uint32_t(texel));
+        const glm::dvec3 scaled(centre.x, 0, centre.y);
         return std::uint16_t(ground_.cell(glm::vec3(scaled / facets_.scale + facets_.centre)));
     }
 

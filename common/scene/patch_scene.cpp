@@ -1,11 +1,13 @@
 #include "common/scene/patch_scene.h"
 #include "common/services/error.h"
+#include "common/services/random.h"
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <map>
 #include <string>
+#include <unordered_map>
 
 namespace kokage {
 namespace {
@@ -79,6 +81,15 @@ void validate_patches(const PatchScene& scene) {
 /// theirs.
 using MaskKey = std::array<float, 7>;
 
+struct MaskKeyHash {
+    std::size_t operator()(const MaskKey& key) const {
+        std::uint64_t hash = 0;
+        for (const float value : key)
+            hash = hash64(hash + std::bit_cast<std::uint32_t>(value + 0.f)); // -0 and 0 are equal
+        return std::size_t(hash);
+    }
+};
+
 MaskKey mask_key(const PatchScene& scene, std::size_t t) {
     const glm::vec2 a = scene.uvs[scene.triangles[t].x], b = scene.uvs[scene.triangles[t].y],
                     c = scene.uvs[scene.triangles[t].z];
@@ -109,20 +120,6 @@ double solid_share(const AlphaMask& mask, const MaskKey& key, int n) {
     return double(solid) / (double(n) * n);
 }
 
-std::map<MaskKey, double> solid_shares(const PatchScene& scene) {
-    std::map<MaskKey, double> shares;
-    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
-        if (scene.masked(t))
-            shares.emplace(mask_key(scene, t), 0);
-    // A tree with an atlas of its own for every leaf must not cost minutes: at most 5e7 mask look-ups in all.
-    const int limit = std::clamp(int(std::sqrt(5e7 / std::max<double>(1, double(shares.size())))), 16, 512);
-    for (auto& [key, share] : shares) {
-        const AlphaMask& mask = scene.masks[std::size_t(key[0])];
-        share = solid_share(mask, key, lattice_size(mask, key, limit));
-    }
-    return shares;
-}
-
 } // namespace
 
 Bounds bounds_of(const PatchScene& scene) {
@@ -137,14 +134,43 @@ Bounds bounds_of(const PatchScene& scene) {
     return bounds;
 }
 
+std::vector<float> solid_shares(const PatchScene& scene) {
+    if (scene.triangle_mask.empty())
+        return {};
+    std::unordered_map<MaskKey, std::uint32_t, MaskKeyHash> kinds;
+    std::vector<MaskKey> keys;
+    constexpr std::uint32_t kSolid = ~0u;
+    std::vector<std::uint32_t> kind(scene.triangles.size(), kSolid);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        if (scene.masked(t)) {
+            const MaskKey key = mask_key(scene, t);
+            const auto [entry, is_new] = kinds.try_emplace(key, std::uint32_t(keys.size()));
+            if (is_new)
+                keys.push_back(key);
+            kind[t] = entry->second;
+        }
+    // A tree with an atlas of its own for every leaf must not cost minutes: at most 5e7 mask look-ups in all.
+    const int limit = std::clamp(int(std::sqrt(5e7 / std::max<double>(1, double(keys.size())))), 16, 512);
+    std::vector<float> share_of_kind;
+    for (const MaskKey& key : keys) {
+        const AlphaMask& mask = scene.masks[std::size_t(key[0])];
+        share_of_kind.push_back(float(solid_share(mask, key, lattice_size(mask, key, limit))));
+    }
+    std::vector<float> shares(scene.triangles.size(), 1.f);
+    for (std::size_t t = 0; t < shares.size(); ++t)
+        if (kind[t] != kSolid)
+            shares[t] = share_of_kind[kind[t]];
+    return shares;
+}
+
 std::vector<double> solid_areas(const PatchScene& scene) {
-    const std::map<MaskKey, double> shares = solid_shares(scene);
+    const std::vector<float> shares = solid_shares(scene);
     std::vector<double> areas(scene.patches.size(), 0.0);
     for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
         const glm::dvec3 a(scene.positions[scene.triangles[t].x]);
         const double area = 0.5 * glm::length(glm::cross(glm::dvec3(scene.positions[scene.triangles[t].y]) - a,
                                                          glm::dvec3(scene.positions[scene.triangles[t].z]) - a));
-        areas[scene.triangle_patch[t]] += scene.masked(t) ? area * shares.at(mask_key(scene, t)) : area;
+        areas[scene.triangle_patch[t]] += shares.empty() ? area : area * double(shares[t]);
     }
     return areas;
 }

@@ -58,7 +58,11 @@ struct Bounds {
 /// Box of all triangles' corners; a zero box at the origin if there are none.
 Bounds bounds_of(const PatchScene& scene);
 
-/// Solid area of every patch in m^2 (alpha holes taken out, by counting mask texel centres or fixed sample points).
+/// Solid share of every triangle's area (alpha holes taken out, by counting mask texel centres or fixed sample points);
+/// empty if no mask is used.
+std::vector<float> solid_shares(const PatchScene& scene);
+
+/// Solid area of every patch in m^2, by solid_shares().
 std::vector<double> solid_areas(const PatchScene& scene);
 
 /// Throws InputError naming the first inconsistent index or non-finite number.

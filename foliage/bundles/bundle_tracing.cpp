@@ -140,14 +140,19 @@ float pixel_density(const Facets& facets, float pixels) {
     return float(std::clamp(wanted, 1.0, std::max(8192.0 / std::max(extent, 1e-6), 1.0)));
 }
 
-GroundGrid make_ground_grid(const Facets& facets, float height_m) {
+GroundGrid make_ground_grid(const Facets& facets, float height_m, int directions) {
     GroundGrid grid;
     grid.height = float((double(height_m) - facets.centre.y) * facets.scale);
     const glm::vec3 size = facets.high - facets.low, middle = 0.5f * (facets.low + facets.high);
     // Shadows of a sun 20 degrees above the horizon stay inside.
     const float half = 0.75f * std::max(size.x, size.z) + 2 * std::max(size.y, facets.high.y - grid.height);
+    // A spruce's lowest boughs, which lie near the ground in the edge of its own shadow, were 4 % wrong (MRE of all
+    // leaves, 2,000 of them) over 32 x 32 texels with any number of lines, and 2 % over 128 x 128.
+    constexpr int kLeast = 32, kMost = 128, kDirections = 64;
+    const double wanted = kLeast * std::sqrt(double(directions) / kDirections);
+    grid.size = std::clamp(int(wanted), kLeast, kMost);
     grid.low = glm::vec2(middle.x, middle.z) - half;
-    grid.texel = std::max(2 * half / GroundGrid::kSize, 1e-6f);
+    grid.texel = std::max(2 * half / float(grid.size), 1e-6f);
     return grid;
 }
 
@@ -157,7 +162,8 @@ BundleTransport trace_bundles(const PatchScene& scene, const Facets& facets, con
     transport.sky_lines = make_line_directions(settings.sky_directions, hash64(settings.seed) + 1);
     transport.link_lines = make_line_directions(settings.link_directions, hash64(settings.seed) + 2);
     if (scene.ground)
-        transport.ground = make_ground_grid(facets, scene.ground->height_m);
+        transport.ground =
+            make_ground_grid(facets, scene.ground->height_m, settings.sky_directions + settings.link_directions);
     const std::size_t skies = transport.sky_lines.directions.size(), linked = transport.link_lines.directions.size();
     transport.sky_open = make_open(skies, facets, true);
     transport.link_open = make_open(linked, facets, true);
@@ -222,7 +228,7 @@ BeamVisibility trace_beams(const PatchScene& scene, const Facets& facets, const 
         if (!ground)
             return;
         std::vector<float>& shadow = visibility.ground_shadow[beam];
-        shadow.assign(GroundGrid::kSize * GroundGrid::kSize, 0.f);
+        shadow.assign(ground->texels(), 0.f);
         const GroundProjection on_ground = project_to_ground(*ground, projection);
         if (!on_ground.valid)
             return;

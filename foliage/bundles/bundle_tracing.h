@@ -24,7 +24,9 @@ struct OpenFractions {
     const std::uint8_t* far_row(std::size_t direction) const { return far_end.data() + direction * facet_count; }
 };
 
-GroundGrid make_ground_grid(const Facets& facets, float height_m);
+/// `directions`: of the lines that will light it and look at it. Small texels show more, but few lines light them
+/// noisily.
+GroundGrid make_ground_grid(const Facets& facets, float height_m, int directions);
 
 struct BundleSettings {
     int sky_directions = 24;  ///< lines that only show their ends

@@ -77,7 +77,9 @@ class BundlesTransport : public Transport {
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
     SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
     std::optional<BundleEffort> more_lines(const Lit& lit, const SolutionError& error) const;
-    bool out_of_reach(const SolutionError& error) const;
+    bool reached(const SolutionError& error) const;
+    bool model_known(const Lit& lit, const SolutionError& error) const;
+    bool out_of_reach(const Lit& lit, const SolutionError& error) const;
     void fill(Solution& solution, const Lit& lit) const;
     void balance(Solution& solution, const Lit& lit) const;
     void add_host_data(const Environment& environment, Solution& solution, Progress& progress) const;
@@ -233,14 +235,22 @@ SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environ
 
 /// More lines that should reach the asked error; empty if it is reached, or they are no use.
 std::optional<BundleEffort> BundlesTransport::more_lines(const Lit& lit, const SolutionError& error) const {
-    if (error.all <= 1.02 * options_.error || out_of_reach(error))
+    if (reached(error) || out_of_reach(lit, error))
         return {};
-    const double ratio = lit.sampling_error / sampling_error_for(options_.error, error.model);
+    // Where it had to be measured and can't be told yet, it is seldom small; too few lines now cost another round.
+    constexpr double kLikelyShare = 0.6;
+    const double assumed = drawn_->effort().uniform_side_error;
+    const double model = !error.measured           ? assumed
+                         : model_known(lit, error) ? error.model
+                                                   : std::max(assumed, kLikelyShare * options_.error);
+    const double ratio = lit.sampling_error / sampling_error_for(options_.error, model);
     if (ratio <= 1.05)
         return {};
     const int directions = drawn_->effort().lines.sky_directions + drawn_->effort().lines.link_directions;
     // Evenly spread lines: the error falls faster than 1 / sqrt(lines), about as lines^-0.63 on grown oaks.
-    const double wanted = directions * std::min(1.1 * std::pow(ratio, 1.6), 16.0);
+    // All are drawn anew: small steps, which a measurement's scatter may ask for one after the other, cost more.
+    const double least = error.measured ? 1.4 : 1.0;
+    const double wanted = directions * std::clamp(1.1 * std::pow(ratio, 1.6), least, 16.0);
     BundleEffort more =
         effort_of_directions(int(std::min(std::ceil(wanted), 1e6)), mean_leaf_albedo(scene_), options_.seed);
     if (more.lines.sky_directions + more.lines.link_directions <= directions)
@@ -249,9 +259,24 @@ std::optional<BundleEffort> BundlesTransport::more_lines(const Lit& lit, const S
     return more;
 }
 
+/// A measurement scatters by 15 %: what it finds a little too large is not worth another round.
+bool BundlesTransport::reached(const SolutionError& error) const {
+    return error.all <= (error.measured ? 1.08 : 1.02) * options_.error;
+}
+
+/// What is measured beneath a sampling error that is much larger than the error asked for is mostly noise, unless it is
+/// larger still; and then it may be that of a coarse ground, which more lines make finer.
+bool BundlesTransport::model_known(const Lit& lit, const SolutionError& error) const {
+    constexpr double kMuch = 1.5;
+    constexpr int kFineGround = 64;
+    const std::optional<GroundGrid>& ground = drawn_->transport().ground;
+    return error.measured && (lit.sampling_error <= kMuch * options_.error ||
+                              (error.model > lit.sampling_error && (!ground || ground->size >= kFineGround)));
+}
+
 /// No number of lines would do, and there is another way.
-bool BundlesTransport::out_of_reach(const SolutionError& error) const {
-    return error.all > 1.02 * options_.error && error.measured && kRoom * error.model > options_.error && reach_ &&
+bool BundlesTransport::out_of_reach(const Lit& lit, const SolutionError& error) const {
+    return !reached(error) && model_known(lit, error) && kRoom * error.model > options_.error && reach_ &&
            reach_->may_give_up;
 }
 
@@ -276,7 +301,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
         error = judge(lit, environment, progress, solution.report);
         if (!adaptive_)
             break;
-        if (out_of_reach(error)) {
+        if (out_of_reach(lit, error)) {
             reach_->gave_up = true;
             return solution;
         }

@@ -103,6 +103,8 @@ void DrawnLights::add(const Distant& drawn, const glm::vec3& scale, BeamLight& s
     parallel_blocks(facets_.patch_count, std::size_t(1) << 15, [&](std::size_t from, std::size_t to) {
         for (std::uint32_t f = facets_.patch_first_facet[from]; f < facets_.patch_first_facet[to]; ++f) {
             const Facet& facet = facets_.facets[f];
+            if (!(facet.area > 0)) // all hole
+                continue;
             const float share = facet.area / facets_.patch_area[facet.patch] / 254;
             for (std::size_t beam = 0; beam < count; ++beam) {
                 const std::uint8_t seen = drawn.visibility.open.near_row(beam)[f];
@@ -174,7 +176,7 @@ BeamLight DrawnLights::light(const Environment& environment, const BundleEffort&
     for (auto& half : sum.halves)
         half.resize(2 * scene_.patches.size());
     if (ground_)
-        sum.ground.assign(GroundGrid::kSize * GroundGrid::kSize, glm::vec3(0.f));
+        sum.ground.assign(ground_->texels(), glm::vec3(0.f));
     const LightPlan plan = plan_lights(environment, effort, negligible);
     if (plan.merged > 0)
         report.skips.push_back({std::to_string(plan.merged) + " weak lights merged into their neighbours",
@@ -212,7 +214,7 @@ std::size_t DrawnLights::bytes() const {
     std::size_t total = 0;
     for (const Distant& light : distant_)
         total += light.visibility.open.near_end.size() + light.beams.size() * sizeof(Beam) +
-                 light.visibility.ground_shadow.size() * GroundGrid::kSize * GroundGrid::kSize * sizeof(float);
+                 (ground_ ? light.visibility.ground_shadow.size() * ground_->texels() * sizeof(float) : 0);
     for (const PointTransfer& point : points_)
         total += 2 * point.halves[0].size() * sizeof(glm::vec2) + point.ground.size() * sizeof(float);
     return total;

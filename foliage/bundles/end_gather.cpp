@@ -5,9 +5,13 @@
 #include <hwy/foreach_target.h> // IWYU pragma: keep
 #include <hwy/highway.h>
 
+#include <hwy/contrib/math/math-inl.h>
+
 #include "foliage/bundles/end_gather.h"
 
 #include "common/services/parallel.h"
+
+#include <algorithm>
 
 HWY_BEFORE_NAMESPACE();
 namespace kokage::bundles::HWY_NAMESPACE {
@@ -19,9 +23,10 @@ using Vec = hn::Vec<FloatTag>;
 /// What the kernels need of a block of facets, one array a quantity, padded to whole vectors.
 struct FacetArrays {
     static constexpr std::size_t kBlock = 64;
-    HWY_ALIGN float normal[3][kBlock];    // leaves
-    HWY_ALIGN float form[6][kBlock];      // bark
-    HWY_ALIGN float least_weight[kBlock]; // see gather_ends()
+    HWY_ALIGN float normal[3][kBlock]; // leaves
+    HWY_ALIGN float form[6][kBlock];   // bark
+    HWY_ALIGN float pixels[kBlock];    // that a facet covers head on
+    HWY_ALIGN float masked[kBlock];    // 1 = has holes
     HWY_ALIGN std::uint8_t near_open[kBlock], far_open[kBlock];
     HWY_ALIGN float sums[11][kBlock];
 };
@@ -33,7 +38,24 @@ HWY_INLINE Vec Share(FloatTag d, const std::uint8_t* open) {
     return hn::ConvertTo(d, hn::PromoteTo(di, hn::LoadU(d8, open)));
 }
 
-template <bool Bark>
+enum class FacetKind { solid_leaf, any_leaf, bark };
+
+/// Projected share over the chance that a line meets the facet; see EndSums.
+template <FacetKind Kind>
+HWY_INLINE Vec Weight(FloatTag d, Vec projected, const FacetArrays& block, std::size_t k) {
+    const Vec pixels = hn::Load(d, block.pixels + k);
+    const Vec solid = hn::Max(projected, hn::Div(hn::Set(d, 1.f), pixels));
+    if constexpr (Kind != FacetKind::any_leaf)
+        return solid;
+    constexpr float kLeast = 1e-3f; // steeper ones are not drawn
+    projected = hn::Max(projected, hn::Set(d, kLeast));
+    const Vec covered = hn::Mul(projected, pixels);
+    const Vec exponent = hn::MulAdd(hn::Mul(covered, covered), hn::Set(d, kNeedleClumping), covered);
+    const Vec masked = hn::Div(projected, hn::Neg(hn::Expm1(d, hn::Neg(exponent))));
+    return hn::IfThenElse(hn::Gt(hn::Load(d, block.masked + k), hn::Zero(d)), masked, solid);
+}
+
+template <FacetKind Kind>
 void GatherBlock(FacetArrays& block, std::span<const glm::vec3> directions, const OpenFractions& open,
                  const EndRadiance& radiance, std::size_t first, std::size_t last, std::size_t facet,
                  std::size_t count) {
@@ -61,15 +83,14 @@ void GatherBlock(FacetArrays& block, std::span<const glm::vec3> directions, cons
             auto add = [&](int quantity, Vec value) {
                 hn::Store(hn::Add(hn::Load(d, sum(quantity)), value), d, sum(quantity));
             };
-            if constexpr (Bark) {
+            if constexpr (Kind == FacetKind::bark) {
                 auto form = [&](int j) { return hn::Load(d, block.form[j] + k); };
                 const Vec squares = hn::MulAdd(form(0), hn::Mul(dx, dx),
                                                hn::MulAdd(form(1), hn::Mul(dy, dy), hn::Mul(form(2), hn::Mul(dz, dz))));
                 const Vec mixed = hn::MulAdd(form(3), hn::Mul(dx, dy),
                                              hn::MulAdd(form(4), hn::Mul(dx, dz), hn::Mul(form(5), hn::Mul(dy, dz))));
                 weight = hn::Sqrt(hn::Max(hn::Add(squares, hn::Add(mixed, mixed)), hn::Zero(d)));
-                weight = hn::Max(weight, hn::Load(d, block.least_weight + k));
-                weight = hn::IfThenElseZero(seen, weight);
+                weight = hn::IfThenElseZero(seen, Weight<Kind>(d, weight, block, k));
                 add(0, weight);
                 weight = hn::Mul(weight, hn::Set(d, 1.f / 254));
                 const Vec near_weight = hn::Mul(weight, near_share), far_weight = hn::Mul(weight, far_share);
@@ -83,7 +104,7 @@ void GatherBlock(FacetArrays& block, std::span<const glm::vec3> directions, cons
                     hn::Load(d, block.normal[0] + k), dx,
                     hn::MulAdd(hn::Load(d, block.normal[1] + k), dy, hn::Mul(hn::Load(d, block.normal[2] + k), dz)));
                 const auto front_near = hn::Lt(facing, hn::Zero(d));
-                weight = hn::IfThenElseZero(seen, hn::Max(hn::Abs(facing), hn::Load(d, block.least_weight + k)));
+                weight = hn::IfThenElseZero(seen, Weight<Kind>(d, hn::Abs(facing), block, k));
                 add(0, weight);
                 weight = hn::Mul(weight, hn::Set(d, 1.f / 254));
                 const Vec near_weight = hn::Mul(weight, near_share), far_weight = hn::Mul(weight, far_share);
@@ -106,22 +127,30 @@ void GatherFacets(const Facets& facets, std::span<const glm::vec3> directions, c
                   const EndRadiance& radiance, std::size_t first, std::size_t last, std::size_t facet, std::size_t end,
                   bool bark, std::span<EndSums> sums) {
     FacetArrays block;
+    const auto gather = [&]<FacetKind Kind>(std::size_t count) {
+        GatherBlock<Kind>(block, directions, open, radiance, first, last, facet, count);
+    };
     for (; facet < end; facet += FacetArrays::kBlock) {
         const std::size_t count = std::min(FacetArrays::kBlock, end - facet);
+        bool any_masked = false;
         for (std::size_t k = 0; k < FacetArrays::kBlock; ++k) {
             const Facet& source = facets.facets[facet + std::min(k, count - 1)];
             for (int j = 0; j < 3; ++j)
                 block.normal[j][k] = source.normal[j];
             for (int j = 0; j < 6; ++j)
                 block.form[j][k] = source.form[j];
-            block.least_weight[k] = 1 / std::max(source.area * open.pixels_per_area, 1e-6f);
+            block.pixels[k] = std::clamp(source.area * open.pixels_per_area, 1e-6f, 1e6f);
             for (auto& quantity : block.sums)
                 quantity[k] = 0;
+            block.masked[k] = float(source.masked);
+            any_masked = any_masked || source.masked;
         }
         if (bark)
-            GatherBlock<true>(block, directions, open, radiance, first, last, facet, count);
+            gather.template operator()<FacetKind::bark>(count);
+        else if (any_masked)
+            gather.template operator()<FacetKind::any_leaf>(count);
         else
-            GatherBlock<false>(block, directions, open, radiance, first, last, facet, count);
+            gather.template operator()<FacetKind::solid_leaf>(count);
         for (std::size_t k = 0; k < count; ++k) {
             EndSums& sum = sums[facet + k];
             sum.weight += block.sums[0][k];

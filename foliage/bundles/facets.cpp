@@ -14,12 +14,19 @@ constexpr float kSamePlaneCosine = 0.9998f;
 // degrees, less than the sides of a tube of up to 60 make with each other.
 constexpr float kNearlyFlatCosine = 0.995f;
 
+/// Texture coordinates as an affine function of scaled position.
+struct TextureMap {
+    glm::vec3 point; ///< a point of the polygon, scaled
+    glm::vec2 uv;    ///< its texture coordinate
+    glm::vec3 u_gradient, v_gradient;
+};
+
 struct Outline {
     std::array<glm::vec3, PolygonGroup::kMaxCorners> corners;
     int count = 0;
     std::int16_t mask = -1;
     glm::vec3 normal{0.f};
-    float area = 0;
+    float area = 0, solid_area = 0;
     TextureMap texture{};
 };
 
@@ -52,7 +59,7 @@ bool convex_at(const Outline& outline, int i) {
 
 /// Adds a triangle to an outline across a shared edge if the union stays flat, convex and equally textured.
 bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask, const glm::vec3& normal, float area,
-               bool bark) {
+               float solid_area, bool bark) {
     if (outline.count >= PolygonGroup::kMaxCorners || mask != outline.mask ||
         glm::dot(normal, outline.normal) < (bark ? kNearlyFlatCosine : kSamePlaneCosine))
         return false;
@@ -80,6 +87,7 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
             if (bark)
                 outline.normal = glm::normalize(outline.area * outline.normal + area * normal);
             outline.area += area;
+            outline.solid_area += solid_area;
             return true;
         }
     }
@@ -89,7 +97,8 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
 class Builder {
   public:
     Builder(const PatchScene& scene, Facets& facets)
-        : scene_(scene), facets_(facets), centre_(facets.centre), scale_(float(facets.scale)) {
+        : scene_(scene), solid_shares_(solid_shares(scene)), facets_(facets), centre_(facets.centre),
+          scale_(float(facets.scale)) {
         constexpr float far = std::numeric_limits<float>::max();
         columns_.fill({glm::vec3(far), glm::vec3(-far)});
     }
@@ -115,7 +124,9 @@ class Builder {
                 continue;
             const glm::vec3 normal = cross * (1 / length);
             const auto mask = scene_.masked(triangle) ? scene_.triangle_mask[triangle] : std::int16_t(-1);
-            if (outline.count > 0 && try_merge(outline, corner, mask, normal, 0.5f * length, bark))
+            const float area = 0.5f * length,
+                        solid_area = solid_shares_.empty() ? area : area * solid_shares_[triangle];
+            if (outline.count > 0 && try_merge(outline, corner, mask, normal, area, solid_area, bark))
                 continue;
             flush(outline, index, bark);
             outline.count = 3;
@@ -123,7 +134,8 @@ class Builder {
                 outline.corners[k] = corner[k].position;
             outline.mask = mask;
             outline.normal = normal;
-            outline.area = 0.5f * length;
+            outline.area = area;
+            outline.solid_area = solid_area;
             if (mask >= 0)
                 outline.texture = texture_map(corner, normal);
         }
@@ -193,9 +205,29 @@ class Builder {
         group.normal_y[i] = outline.normal.y;
         group.normal_z[i] = outline.normal.z;
         group.face[i] = face;
-        if (masked) {
-            group.mask.push_back(outline.mask);
-            group.texture.push_back(outline.texture);
+        if (masked)
+            add_texture(outline, i, group.texels);
+    }
+
+    void add_texture(const Outline& outline, std::size_t polygon, TexelMaps& texels) const {
+        const AlphaMask& mask = scene_.masks[std::size_t(outline.mask)];
+        const glm::vec2 size(float(mask.alpha->width), float(mask.alpha->height));
+        texels.mask[polygon] = outline.mask;
+        glm::vec2 low(1.f), high(0.f);
+        for (int k = 0; k < outline.count; ++k) {
+            const glm::vec2 uv = mapped_uv(outline.texture, outline.corners[k]);
+            low = glm::min(low, uv);
+            high = glm::max(high, uv);
+        }
+        constexpr float kTolerated = 1e-4f;
+        const bool inside = std::min(low.x, low.y) >= -kTolerated && std::max(high.x, high.y) <= 1 + kTolerated;
+        texels.wraps[polygon] = inside ? 0.f : 1.f;
+        const glm::vec2 uv = mapped_uv(outline.texture, outline.corners[0]);
+        for (int axis = 0; axis < 2; ++axis) {
+            const glm::vec3& gradient = axis == 0 ? outline.texture.u_gradient : outline.texture.v_gradient;
+            texels.at_corner[std::size_t(axis)][polygon] = size[axis] * uv[axis];
+            for (int c = 0; c < 3; ++c)
+                texels.gradient[std::size_t(axis)][std::size_t(c)][polygon] = size[axis] * gradient[c];
         }
     }
 
@@ -207,14 +239,24 @@ class Builder {
         for (auto* axis : {&group.normal_x, &group.normal_y, &group.normal_z})
             axis->resize(padded);
         group.face.resize(padded);
+        if (!group.masked)
+            return;
+        group.texels.mask.resize(padded);
+        group.texels.wraps.resize(padded);
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            group.texels.at_corner[axis].resize(padded);
+            for (auto& component : group.texels.gradient[axis])
+                component.resize(padded);
+        }
     }
 
     static void add_area(Facet& facet, const Outline& outline) {
         const glm::vec3 n = outline.normal;
         const float moments[6] = {n.x * n.x, n.y * n.y, n.z * n.z, n.x * n.y, n.x * n.z, n.y * n.z};
         for (int i = 0; i < 6; ++i)
-            facet.form[i] += outline.area * moments[i];
-        facet.area += outline.area;
+            facet.form[i] += outline.solid_area * moments[i];
+        facet.area += outline.solid_area;
+        facet.masked = facet.masked || outline.mask >= 0;
     }
 
     std::uint32_t facet_for(const Outline& outline, std::uint32_t patch, bool bark) {
@@ -232,6 +274,7 @@ class Builder {
     }
 
     const PatchScene& scene_;
+    const std::vector<float> solid_shares_; ///< per triangle; empty without masks
     Facets& facets_;
     const glm::vec3 centre_; ///< a float itself, so that differences from it are as exact as the positions are
     const float scale_;
@@ -250,7 +293,7 @@ void measure(const PatchScene& scene, Facets& facets) {
         // sqrt(mean (n.d)^2) exceeds mean |n.d|: by nothing for a plane, by pi / (2 sqrt 2) for a tube.
         const float excess = facet.bark ? 8 / (kPi * kPi) : 1.f;
         for (float& moment : facet.form)
-            moment *= excess / facet.area;
+            moment *= facet.area > 0 ? excess / facet.area : 0.f;
     }
     double leaf_area = 0, any_area = 0;
     std::size_t leaves = 0, any = 0;
@@ -267,6 +310,27 @@ void measure(const PatchScene& scene, Facets& facets) {
     facets.mean_leaf_area = leaves ? float(leaf_area / double(leaves)) : any ? float(any_area / double(any)) : 0.f;
 }
 
+MaskBits pack(const std::vector<AlphaMask>& masks) {
+    constexpr int kBits = 32;
+    MaskBits packed;
+    for (const AlphaMask& mask : masks) {
+        const Image& alpha = *mask.alpha;
+        const int stride = (alpha.width + kBits - 1) / kBits;
+        const std::size_t first = packed.words.size();
+        packed.first.push_back(std::int32_t(first));
+        packed.stride.push_back(stride);
+        packed.last_column.push_back(float(alpha.width) - 0.5f);
+        packed.last_row.push_back(float(alpha.height) - 0.5f);
+        packed.words.resize(first + std::size_t(stride) * std::size_t(alpha.height));
+        for (int y = 0; y < alpha.height; ++y)
+            for (int x = 0; x < alpha.width; ++x)
+                if (alpha.at(x, y)[0] >= mask.cutoff)
+                    packed.words[first + std::size_t(y) * std::size_t(stride) + std::size_t(x / kBits)] |=
+                        1u << (x % kBits);
+    }
+    return packed;
+}
+
 template <class T>
 std::size_t size_in_bytes(const std::vector<T>& values) {
     return values.size() * sizeof(T);
@@ -274,8 +338,23 @@ std::size_t size_in_bytes(const std::vector<T>& values) {
 
 } // namespace
 
+std::size_t MaskBits::bytes() const {
+    return size_in_bytes(words) + size_in_bytes(first) + size_in_bytes(stride) + size_in_bytes(last_column) +
+           size_in_bytes(last_row);
+}
+
+std::size_t TexelMaps::bytes() const {
+    std::size_t sum = size_in_bytes(mask) + size_in_bytes(wraps);
+    for (std::size_t axis = 0; axis < 2; ++axis) {
+        sum += size_in_bytes(at_corner[axis]);
+        for (const auto& component : gradient[axis])
+            sum += size_in_bytes(component);
+    }
+    return sum;
+}
+
 std::size_t PolygonGroup::bytes() const {
-    std::size_t sum = size_in_bytes(face) + size_in_bytes(mask) + size_in_bytes(texture);
+    std::size_t sum = size_in_bytes(face) + texels.bytes();
     for (const auto* axis : {&x, &y, &z})
         for (const auto& corner : *axis)
             sum += size_in_bytes(corner);
@@ -285,8 +364,8 @@ std::size_t PolygonGroup::bytes() const {
 }
 
 std::size_t Facets::bytes() const {
-    std::size_t sum =
-        size_in_bytes(facets) + size_in_bytes(patch_first_facet) + size_in_bytes(patch_area) + size_in_bytes(boxes);
+    std::size_t sum = mask_bits.bytes() + size_in_bytes(facets) + size_in_bytes(patch_first_facet) +
+                      size_in_bytes(patch_area) + size_in_bytes(boxes);
     for (const PolygonGroup& group : groups)
         sum += group.bytes();
     return sum;
@@ -309,6 +388,7 @@ Facets make_facets(const PatchScene& scene) {
     facets.high = glm::vec3((high - facets.centre) * facets.scale);
     facets.low = glm::vec3((low - facets.centre) * facets.scale);
 
+    facets.mask_bits = pack(scene.masks);
     facets.patch_first_facet.reserve(scene.patches.size() + 1);
     facets.facets.reserve(scene.patches.size());
     Builder builder(scene, facets);

@@ -16,9 +16,10 @@ namespace kokage::bundles {
 
 struct Facet {
     glm::vec3 normal{0.f}; ///< leaf: unit, front side; bark: unused
-    float area = 0;        ///< in scaled units^2, alpha holes included
+    float area = 0;        ///< solid area (alpha holes taken out) in scaled units^2; may be 0
     std::uint32_t patch = 0;
     bool bark = false;
+    bool masked = false; ///< has holes
     /// Mean of n n^T over the facet's area (xx, yy, zz, xy, xz, yz), times a factor that makes projected_share() right
     /// on average: exact for flat leaves and for tubes, within a few percent for other bark.
     float form[6] = {0, 0, 0, 0, 0, 0};
@@ -31,11 +32,22 @@ struct Facet {
     }
 };
 
-/// Texture coordinates as an affine function of scaled position, for polygons with a mask.
-struct TextureMap {
-    glm::vec3 point; ///< a point of the polygon, scaled
-    glm::vec2 uv;    ///< its texture coordinate
-    glm::vec3 u_gradient, v_gradient;
+/// The alpha masks as bits, one a texel: 1 = solid. Rows of whole words, one mask after the other.
+struct MaskBits {
+    std::vector<std::uint32_t> words;
+    std::vector<std::int32_t> first, stride;  ///< of each mask: its first word, words a row
+    std::vector<float> last_column, last_row; ///< width - 1/2, height - 1/2: what texel coordinates are clamped to
+    std::size_t bytes() const;
+};
+
+/// Texture coordinates of polygons with a mask, in texels, as affine functions of scaled position; one array a
+/// quantity.
+struct TexelMaps {
+    std::vector<std::int32_t> mask;                            ///< index in PatchScene::masks and MaskBits
+    std::vector<float> wraps;                                  ///< 1 = leaves the texture (which repeats, say), else 0
+    std::array<std::vector<float>, 2> at_corner;               ///< [axis]: at corner 0
+    std::array<std::array<std::vector<float>, 3>, 2> gradient; ///< [axis][x, y, z]
+    std::size_t bytes() const;
 };
 
 /// Polygons of one corner count, all with a mask or all without; one array a quantity, in patch order; padded so that
@@ -50,8 +62,7 @@ struct PolygonGroup {
     std::array<std::vector<float>, kMaxCorners> x, y, z; ///< [corner][polygon], counter-clockwise seen from the front
     std::vector<float> normal_x, normal_y, normal_z;
     std::vector<std::uint32_t> face; ///< see Facets::face_count; bark: of the face that looks to the near end, | kBark
-    std::vector<std::int16_t> mask;  ///< index in PatchScene::masks; empty without masks
-    std::vector<TextureMap> texture; ///< empty without masks
+    TexelMaps texels;                ///< empty without masks
     std::size_t bytes() const;
 };
 
@@ -63,10 +74,11 @@ struct Facets {
     double scale = 1; ///< scaled = (metres - centre) * scale
     glm::dvec3 centre{0.0};
     std::vector<PolygonGroup> groups; ///< by corners, then without and with masks; those that occur
-    std::vector<Facet> facets;        ///< leaf facets first, then bark facets
+    MaskBits mask_bits;
+    std::vector<Facet> facets; ///< leaf facets first, then bark facets
     std::uint32_t leaf_facet_count = 0;
     std::vector<std::uint32_t> patch_first_facet; ///< patch count + 1
-    std::vector<float> patch_area;                ///< scaled units^2, holes included
+    std::vector<float> patch_area;                ///< solid area, scaled units^2
     std::uint32_t patch_count = 0;
     float mean_leaf_area = 0;      ///< of leaf patches with an area (of all patches if there is no leaf)
     glm::vec3 low{0.f}, high{0.f}; ///< bounds, scaled

@@ -18,7 +18,8 @@ HWY_BEFORE_NAMESPACE();
 namespace kokage::bundles::HWY_NAMESPACE {
 
 /// Room that one call of a drawing function below may need.
-constexpr std::size_t kBatchRoom = kMostBatchRows * kMostBatchColumns * kMostLanes + 2 * kMostLanes;
+constexpr std::size_t kBatchRoom = kMostMaskedRows * kMostMaskedColumns * kMostLanes + 2 * kMostLanes;
+static_assert(kMostMaskedRows >= kMostBatchRows && kMostMaskedColumns >= kMostBatchColumns);
 
 /// The test of a polygon's fragments against its mask.
 struct MaskTest {
@@ -30,17 +31,19 @@ struct MaskTest {
 /// Texture coordinates over the picture: moving a pixel moves along the plane, (u_axis + direction slope_u) / density.
 MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, std::size_t index,
                       const Projection& projection, const LonePolygon& polygon) {
-    const TextureMap& map = group.texture[index];
     const glm::vec3 along_u = (projection.u_axis + projection.direction * polygon.slope_u) / projection.pixels_per_unit;
     const glm::vec3 along_v = (projection.v_axis + projection.direction * polygon.slope_v) / projection.pixels_per_unit;
     MaskTest test;
-    test.mask = &scene.masks[std::size_t(group.mask[index])];
-    test.uv_du = {glm::dot(map.u_gradient, along_u), glm::dot(map.v_gradient, along_u)};
-    test.uv_dv = {glm::dot(map.u_gradient, along_v), glm::dot(map.v_gradient, along_v)};
-    const glm::vec3 from_point = glm::vec3(group.x[0][index], group.y[0][index], group.z[0][index]) - map.point;
-    const glm::vec2 uv_corner =
-        map.uv + glm::vec2(glm::dot(map.u_gradient, from_point), glm::dot(map.v_gradient, from_point));
-    test.uv0 = uv_corner - polygon.u0 * test.uv_du - polygon.v0 * test.uv_dv;
+    test.mask = &scene.masks[std::size_t(group.texels.mask[index])];
+    const glm::vec2 size(float(test.mask->alpha->width), float(test.mask->alpha->height));
+    for (int axis = 0; axis < 2; ++axis) {
+        const auto& texels = group.texels.gradient[std::size_t(axis)];
+        const glm::vec3 gradient = glm::vec3(texels[0][index], texels[1][index], texels[2][index]) / size[axis];
+        test.uv_du[axis] = glm::dot(gradient, along_u);
+        test.uv_dv[axis] = glm::dot(gradient, along_v);
+        test.uv0[axis] = group.texels.at_corner[std::size_t(axis)][index] / size[axis] - polygon.u0 * test.uv_du[axis] -
+                         polygon.v0 * test.uv_dv[axis];
+    }
     return test;
 }
 
@@ -64,7 +67,7 @@ void DrawLone(const LonePolygon& polygon, const MaskTest* test, const Projection
 }
 
 template <int Corners, class MakeRoom>
-void DrawGroup(const PatchScene& scene, const PolygonGroup& group, const Projection& projection,
+void DrawGroup(const PatchScene& scene, const MaskBits& bits, const PolygonGroup& group, const Projection& projection,
                std::uint32_t face_mask, FragmentBuffer& buffer, std::uint32_t* fragments, MakeRoom&& make_room) {
     const FloatTag d;
     const std::size_t lanes = hn::Lanes(d);
@@ -74,13 +77,20 @@ void DrawGroup(const PatchScene& scene, const PolygonGroup& group, const Project
     for (std::size_t first = 0; first < group.count; first += lanes) {
         if (!ProjectBatch<Corners>(group, first, projection, depths, batch))
             continue;
-        auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(kMostBatchRows))),
-                            hn::Gt(batch.columns, hn::Set(d, float(kMostBatchColumns))));
-        alone = group.masked ? batch.alive : hn::And(alone, batch.alive);
-        if (HWY_LIKELY(hn::AllFalse(d, alone))) {
-            DrawBatch<Corners>(batch, batch.alive, projection, face_mask, buffer, fragments);
-        } else {
-            DrawBatch<Corners>(batch, hn::AndNot(alone, batch.alive), projection, face_mask, buffer, fragments);
+        const int most_rows = group.masked ? kMostMaskedRows : kMostBatchRows,
+                  most_columns = group.masked ? kMostMaskedColumns : kMostBatchColumns;
+        auto alone = hn::Or(hn::Gt(batch.rows, hn::Set(d, float(most_rows))),
+                            hn::Gt(batch.columns, hn::Set(d, float(most_columns))));
+        if (group.masked)
+            alone = hn::Or(alone, hn::Gt(hn::LoadU(d, &group.texels.wraps[first]), hn::Zero(d)));
+        alone = hn::And(alone, batch.alive);
+        const auto together = hn::AndNot(alone, batch.alive);
+        if (group.masked)
+            DrawBatch<Corners>(batch, together, HolesOfBatch(group, first, bits, projection, batch, together),
+                               projection, face_mask, buffer, fragments);
+        else
+            DrawBatch<Corners>(batch, together, NoHoles(), projection, face_mask, buffer, fragments);
+        if (HWY_UNLIKELY(!hn::AllFalse(d, alone))) {
             make_room();
             ForEachLane<Corners>(batch, alone, [&](const LonePolygon& polygon, std::size_t lane) {
                 if (group.masked) {
@@ -103,7 +113,7 @@ void DrawPolygons(const PatchScene& scene, const Facets& facets, const Projectio
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
     for (const PolygonGroup& group : facets.groups) {
         auto draw = [&]<int Corners>() {
-            DrawGroup<Corners>(scene, group, projection, face_mask, buffer, fragments, make_room);
+            DrawGroup<Corners>(scene, facets.mask_bits, group, projection, face_mask, buffer, fragments, make_room);
         };
         switch (group.corners) {
         case 3:

@@ -11,15 +11,20 @@ namespace kokage::bundles {
 
 /// A square of ground texels around the tree, lit and shaded by it; beyond it the ground is taken to lie open.
 struct GroundGrid {
-    static constexpr int kSize = 32;
-    static constexpr std::uint32_t kTexels = kSize * kSize;
     static constexpr int kStride = 2; ///< every 2nd pixel in u and v is followed to the ground
+    int size = 32;                    ///< texels along a side
     float height = 0;                 ///< scaled y
     glm::vec2 low{0.f};               ///< scaled x, z of the corner
     float texel = 1;                  ///< scaled side of a texel
+    std::uint32_t texels() const { return std::uint32_t(size) * std::uint32_t(size); }
+    /// -1 outside.
     int texel_at(float x, float z) const {
         const float i = (x - low.x) / texel, j = (z - low.y) / texel;
-        return i >= 0 && j >= 0 && i < kSize && j < kSize ? int(j) * kSize + int(i) : -1;
+        return i >= 0 && j >= 0 && i < float(size) && j < float(size) ? int(j) * size + int(i) : -1;
+    }
+    glm::vec2 centre_of(std::uint32_t index) const {
+        const auto side = std::uint32_t(size);
+        return low + texel * (glm::vec2(float(index % side), float(index / side)) + 0.5f);
     }
 };
 

@@ -51,13 +51,12 @@ PointTransfer trace_point_light(const RayQueries& queries, const Facets& facets,
     transfer.rays = 2ull * std::uint64_t(half) * scene.patches.size();
     if (!ground)
         return transfer;
-    transfer.ground.assign(GroundGrid::kSize * GroundGrid::kSize, 0.f);
-    for (int texel = 0; texel < GroundGrid::kSize * GroundGrid::kSize; ++texel) {
-        const float x = ground->low.x + (float(texel % GroundGrid::kSize) + 0.5f) * ground->texel;
-        const float z = ground->low.y + (float(texel / GroundGrid::kSize) + 0.5f) * ground->texel;
-        const glm::vec3 point(glm::dvec3(x, ground->height, z) / facets.scale + facets.centre);
+    transfer.ground.assign(ground->texels(), 0.f);
+    for (std::uint32_t texel = 0; texel < ground->texels(); ++texel) {
+        const glm::vec2 centre = ground->centre_of(texel);
+        const glm::vec3 point(glm::dvec3(centre.x, ground->height, centre.y) / facets.scale + facets.centre);
         const float irradiance = lamp_irradiance(queries, position, point, glm::vec3(0, 1, 0));
-        transfer.ground[std::size_t(texel)] = std::max(irradiance, 0.f);
+        transfer.ground[texel] = std::max(irradiance, 0.f);
     }
     return transfer;
 }

@@ -27,7 +27,8 @@ using FloatMask = hn::Mask<FloatTag>;
 
 constexpr std::size_t kMostLanes = HWY_MAX_BYTES / 4;
 /// Polygons of more rows or columns than this are drawn row by row: waiting for them would stall the others.
-constexpr int kMostBatchRows = 32, kMostBatchColumns = 32;
+/// Cards with holes are all large.
+constexpr int kMostBatchRows = 32, kMostBatchColumns = 32, kMostMaskedRows = 64, kMostMaskedColumns = 64;
 /// Polygons this close to edge-on are not drawn: they hold a hundred-thousandth of the light, and their depth is too
 /// steep.
 constexpr float kLeastFacing = 0.004f;
@@ -138,10 +139,90 @@ HWY_INLINE bool ProjectBatch(const PolygonGroup& group, std::size_t first, const
     return true;
 }
 
-/// Adds the covered pixels of the lanes in `drawn` to the buffer, and their number to `fragments` of their face.
-template <int Corners>
-HWY_INLINE void DrawBatch(const PolygonBatch<Corners>& batch, FloatMask drawn, const Projection& projection,
-                          std::uint32_t face_mask, FragmentBuffer& buffer, std::uint32_t* fragments) {
+/// No mask: every covered pixel is solid.
+struct NoHoles {
+    static constexpr bool kMasked = false;
+    void StartRow(FloatVec, FloatVec) {}
+    void NextColumn() {}
+    HWY_INLINE FloatMask Solid(FloatMask inside) const { return inside; }
+};
+
+/// The masks of a batch's polygons over the picture: texel coordinates are planes over it, as depth is. Only for
+/// polygons that stay in their texture.
+class HolesOfBatch {
+  public:
+    static constexpr bool kMasked = true;
+
+    /// Of polygons [first, first + lanes); those that aren't `drawn` need not make sense.
+    template <int Corners>
+    HolesOfBatch(const PolygonGroup& group, std::size_t first, const MaskBits& bits, const Projection& projection,
+                 const PolygonBatch<Corners>& batch, FloatMask drawn)
+        : words_(reinterpret_cast<const std::int32_t*>(bits.words.data())) {
+        const FloatTag d;
+        const IntTag di;
+        const float pixel = 1 / projection.pixels_per_unit;
+        const glm::vec3 &u = projection.u_axis, &v = projection.v_axis, &w = projection.direction;
+        for (std::size_t axis = 0; axis < 2; ++axis) {
+            const auto gx = hn::LoadU(d, &group.texels.gradient[axis][0][first]),
+                       gy = hn::LoadU(d, &group.texels.gradient[axis][1][first]),
+                       gz = hn::LoadU(d, &group.texels.gradient[axis][2][first]);
+            const auto along = [&](const glm::vec3& a) {
+                return hn::Mul(
+                    hn::MulAdd(gx, hn::Set(d, a.x), hn::MulAdd(gy, hn::Set(d, a.y), hn::Mul(gz, hn::Set(d, a.z)))),
+                    hn::Set(d, pixel));
+            };
+            // Moving a pixel moves along the plane, (u_axis + direction slope_u) / density.
+            const auto along_w = along(w);
+            const auto du = hn::MulAdd(along_w, batch.slope_u, along(u)),
+                       dv = hn::MulAdd(along_w, batch.slope_v, along(v));
+            const auto corner = hn::LoadU(d, &group.texels.at_corner[axis][first]);
+            const auto origin = hn::NegMulAdd(batch.u0, du, hn::NegMulAdd(batch.v0, dv, corner));
+            du_[axis] = hn::IfThenElseZero(drawn, du);
+            dv_[axis] = hn::IfThenElseZero(drawn, dv);
+            origin_[axis] = hn::IfThenElseZero(drawn, origin);
+            texel_[axis] = origin_[axis];
+        }
+        const auto mask = hn::LoadU(di, &group.texels.mask[first]);
+        first_ = hn::GatherIndex(di, bits.first.data(), mask);
+        stride_ = hn::GatherIndex(di, bits.stride.data(), mask);
+        last_[0] = hn::GatherIndex(d, bits.last_column.data(), mask);
+        last_[1] = hn::GatherIndex(d, bits.last_row.data(), mask);
+    }
+
+    HWY_INLINE void StartRow(FloatVec x, FloatVec y) {
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            texel_[axis] = hn::MulAdd(x, du_[axis], hn::MulAdd(y, dv_[axis], origin_[axis]));
+    }
+    HWY_INLINE void NextColumn() {
+        for (std::size_t axis = 0; axis < 2; ++axis)
+            texel_[axis] = hn::Add(texel_[axis], du_[axis]);
+    }
+    /// Those of the lanes `inside` whose texel is solid.
+    HWY_INLINE FloatMask Solid(FloatMask inside) const {
+        const FloatTag d;
+        const IntTag di;
+        const auto clamped = [&](std::size_t axis) {
+            return hn::ConvertTo(di, hn::Min(hn::Max(texel_[axis], hn::Zero(d)), last_[axis]));
+        };
+        const auto column = clamped(0), row = clamped(1);
+        const auto place = hn::Add(hn::Add(first_, hn::Mul(row, stride_)), hn::ShiftRight<5>(column));
+        const auto word = hn::GatherIndex(di, words_, place);
+        const auto bit = hn::Shl(hn::Set(di, 1), hn::And(column, hn::Set(di, 31)));
+        return hn::And(inside, hn::RebindMask(d, hn::TestBit(word, bit)));
+    }
+
+  private:
+    const std::int32_t* words_;
+    FloatVec du_[2], dv_[2], origin_[2], texel_[2], last_[2];
+    IntVec first_, stride_;
+};
+
+/// Adds the covered pixels of the lanes in `drawn` that are solid to the buffer, and their number to `fragments` of
+/// their face.
+template <int Corners, class Holes>
+HWY_INLINE void DrawBatch(const PolygonBatch<Corners>& batch, FloatMask drawn, Holes holes,
+                          const Projection& projection, std::uint32_t face_mask, FragmentBuffer& buffer,
+                          std::uint32_t* fragments) {
     const FloatTag d;
     const IntTag di;
     const KeyTag dk;
@@ -165,18 +246,24 @@ HWY_INLINE void DrawBatch(const PolygonBatch<Corners>& batch, FloatMask drawn, c
         auto remaining = hn::Sub(hn::Ceil(right), begin);
         auto inside = hn::And(hn::Lt(hn::Set(d, float(row)), rows), hn::Gt(remaining, hn::Zero(d)));
         if (!hn::AllFalse(d, inside)) {
-            covered = hn::Add(covered, hn::IfThenElseZero(inside, remaining));
+            if constexpr (!Holes::kMasked)
+                covered = hn::Add(covered, hn::IfThenElseZero(inside, remaining));
+            holes.StartRow(begin, y);
             const auto column = hn::ConvertTo(di, begin);
             auto pixel = hn::BitCast(dk, hn::Add(line, column));
             auto key = hn::Add(line_key, hn::Mul(hn::BitCast(dk, hn::Sub(column, first_column)), batch.key_du));
             do {
-                const auto lanes = hn::RebindMask(dk, inside);
+                const auto solid = holes.Solid(inside);
+                if constexpr (Holes::kMasked)
+                    covered = hn::Add(covered, hn::IfThenElseZero(solid, hn::Set(d, 1.f)));
+                const auto lanes = hn::RebindMask(dk, solid);
                 const auto faced = hn::Or(hn::AndNot(hn::Set(dk, face_mask), key), batch.face);
                 hn::StoreU(hn::Compress(faced, lanes), dk, key_out);
                 hn::StoreU(hn::Compress(pixel, lanes), dk, pixel_out);
                 const std::size_t written = hn::CountTrue(dk, lanes);
                 key_out += written;
                 pixel_out += written;
+                holes.NextColumn();
                 key = hn::Add(key, batch.key_du);
                 pixel = hn::Add(pixel, hn::Set(dk, 1u));
                 remaining = hn::Sub(remaining, hn::Set(d, 1.f));

@@ -19,7 +19,7 @@ void gather_ray_ends(const BundleTransport& transport, const Image& remainder, c
     for (const glm::vec3& direction : rays.sky_cells.directions)
         down.push_back(direction.y < 0);
     if (transport.ground) {
-        radiance.resize(radiance.size() + GroundGrid::kTexels + 1, ground_radiance);
+        radiance.resize(radiance.size() + transport.ground->texels() + 1, ground_radiance);
         down.resize(radiance.size(), 1);
     }
     const float share = 1 / float(rays.rays_a_row);

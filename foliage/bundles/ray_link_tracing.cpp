@@ -53,13 +53,13 @@ class RayTracing {
         if (!ground_ || direction.y >= 0)
             return kEnd + std::uint32_t(rays_.sky_cells.cell(direction));
         return kEnd + std::uint32_t(rays_.sky_cells.size()) +
-               (met ? texel_under(from + hit.distance * direction) : GroundGrid::kTexels);
+               (met ? texel_under(from + hit.distance * direction) : ground_->texels());
     }
 
     std::uint32_t texel_under(const glm::vec3& point) const {
         const glm::vec3 scaled((glm::dvec3(point) - facets_.centre) * facets_.scale);
         const int texel = ground_->texel_at(scaled.x, scaled.z);
-        return texel >= 0 ? std::uint32_t(texel) : GroundGrid::kTexels;
+        return texel >= 0 ? std::uint32_t(texel) : ground_->texels();
     }
 
     const RayQueries& queries_;
@@ -70,9 +70,23 @@ class RayTracing {
     std::uint64_t seed_;
 };
 
+/// An end of an earlier ray, whose ground may have had larger texels.
+std::uint32_t end_now(std::uint16_t end, const BundleTransport& earlier, const std::optional<GroundGrid>& ground) {
+    const std::size_t sky = earlier.rays.sky_cells.size();
+    if (end < sky || !ground || !earlier.ground || ground->size == earlier.ground->size)
+        return kEnd + end;
+    const auto texel = std::uint32_t(end - sky);
+    int now = -1;
+    if (texel < earlier.ground->texels()) {
+        const glm::vec2 centre = earlier.ground->centre_of(texel);
+        now = ground->texel_at(centre.x, centre.y);
+    }
+    return kEnd + std::uint32_t(sky) + (now >= 0 ? std::uint32_t(now) : ground->texels());
+}
+
 /// Copies what earlier rays of a patch saw to the start of its rows; returns their number, 0 if there are none.
-std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, std::uint32_t rays_a_row,
-                     std::span<std::uint32_t> seen) {
+std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, const std::optional<GroundGrid>& ground,
+                     std::uint32_t rays_a_row, std::span<std::uint32_t> seen) {
     const RayLinks& rays = earlier.rays;
     const auto found = std::lower_bound(rays.patches.begin(), rays.patches.end(), patch);
     if (found == rays.patches.end() || *found != patch || rays.rays_a_row > rays_a_row)
@@ -85,7 +99,7 @@ std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, std::u
         const auto from =
             row % 2 == 0 ? lines.begin() : lines.begin() + std::ptrdiff_t(earlier.links.half_row(side, 0).size());
         const auto to = std::copy_n(from, met, seen.begin() + std::ptrdiff_t(row) * rays_a_row);
-        std::transform(ends.begin(), ends.end(), to, [](std::uint16_t end) { return kEnd + end; });
+        std::transform(ends.begin(), ends.end(), to, [&](std::uint16_t end) { return end_now(end, earlier, ground); });
     }
     return rays.rays_a_row;
 }
@@ -155,33 +169,15 @@ void replace_rows(const RayLinks& rays, const Met& met, Links& links) {
 std::vector<std::uint32_t> leaves_too_small_for_lines(const PatchScene& scene, const Facets& facets,
                                                       const BundleSettings& settings) {
     constexpr double kFarBelow = 1.0 / 16, kFewLines = 8, kBelow = 1.0 / 4;
-    std::vector<double> solid(facets.patch_area.begin(), facets.patch_area.end());
-    if (!scene.masks.empty()) {
-        solid = solid_areas(scene);
-        for (double& area : solid)
-            area *= facets.scale * facets.scale;
-    }
-    double sum = 0;
-    std::size_t leaves = 0;
-    auto counts = [&](std::size_t p) {
-        return scene.patches[p].kind == PatchKind::leaf && solid[p] > 0 && facets.patch_area[p] > 0;
-    };
-    for (std::size_t p = 0; p < scene.patches.size(); ++p)
-        if (counts(p)) {
-            sum += solid[p];
-            ++leaves;
-        }
-    if (leaves == 0)
-        return {};
-    // A leaf's mean projected area is half its area.
+    // A leaf's mean projected area is half its area; one of mean area gets `wanted`.
     const double density = pixel_density(facets, settings.link_pixels),
-                 lines_per_area = settings.link_directions * density * density / 2;
-    const double wanted = double(settings.link_directions) * double(settings.link_pixels) * (sum / double(leaves)) /
-                          double(facets.mean_leaf_area);
+                 lines_per_area = settings.link_directions * density * density / 2,
+                 wanted = double(settings.link_directions) * double(settings.link_pixels);
     std::vector<std::uint32_t> small;
     for (std::size_t p = 0; p < scene.patches.size(); ++p) {
-        const double lines = lines_per_area * solid[p];
-        if (counts(p) && (lines < kFarBelow * wanted || (lines < kFewLines && lines < kBelow * wanted)))
+        const double lines = lines_per_area * double(facets.patch_area[p]);
+        if (scene.patches[p].kind == PatchKind::leaf && lines > 0 &&
+            (lines < kFarBelow * wanted || (lines < kFewLines && lines < kBelow * wanted)))
             small.push_back(std::uint32_t(p));
     }
     return small;
@@ -218,7 +214,8 @@ void add_ray_links(const RayQueries& queries, const PatchPoints& points, const F
             for (std::size_t i = from; i < to; ++i) {
                 const std::uint32_t patch = patches[first + i];
                 const std::span<std::uint32_t> rows = std::span(seen).subspan(i * rays_a_patch, rays_a_patch);
-                solid[i] = tracing.look_around(patch, recall(patch, earlier, rays.rays_a_row, rows), rows);
+                solid[i] =
+                    tracing.look_around(patch, recall(patch, earlier, transport.ground, rays.rays_a_row, rows), rows);
             }
             progress.advance(to - from);
         });

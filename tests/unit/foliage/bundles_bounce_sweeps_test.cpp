@@ -34,7 +34,7 @@ struct TracedTree {
         light.near_radiance = sky.near_radiance;
         light.open_ground_irradiance = sky.open_ground_irradiance;
         if (transport.ground)
-            light.ground_irradiance.assign(GroundGrid::kSize * GroundGrid::kSize, sky.open_ground_irradiance);
+            light.ground_irradiance.assign(transport.ground->texels(), sky.open_ground_irradiance);
         return light;
     }
 };

@@ -122,6 +122,24 @@ TEST(BundlesFacets, MasksThatDoNotContinueAreNotMerged) {
     EXPECT_EQ(polygon_count(make_facets(scene)), 2u);
 }
 
+TEST(BundlesFacets, HolesHaveNoArea) {
+    PatchScene scene;
+    scene.optics.resize(1);
+    test::add_rectangle(scene, {0, 0, 0}, {1, 0, 0}, {0, 0, 1});
+    test::add_rectangle(scene, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
+    test::mask_rectangles(scene, test::half_mask());
+    scene.triangle_mask[2] = scene.triangle_mask[3] = -1; // the second one is whole
+    const Facets facets = make_facets(scene);
+    ASSERT_EQ(facets.facets.size(), 2u);
+    const double to_square_metres = 1 / (facets.scale * facets.scale);
+    EXPECT_NEAR(double(facets.facets[0].area) * to_square_metres, 0.5, 0.01);
+    EXPECT_NEAR(double(facets.patch_area[0]) * to_square_metres, 0.5, 0.01);
+    EXPECT_NEAR(double(facets.patch_area[1]) * to_square_metres, 1, 1e-5);
+    EXPECT_NEAR(double(facets.mean_leaf_area) * to_square_metres, 0.75, 0.01);
+    EXPECT_TRUE(facets.facets[0].masked);
+    EXPECT_FALSE(facets.facets[1].masked);
+}
+
 TEST(BundlesFacets, ProjectedShareIsExactForLeavesAndCloseForTubes) {
     Random random(1);
     PatchScene scene = test::random_crown(20, 1, test::realistic_leaf());

@@ -77,10 +77,25 @@ PatchScene leaves_and_bark() {
 
 using SidePair = std::pair<std::uint32_t, std::uint32_t>;
 
+TEST(BundlesLineLinks, GroundTexelsAreWhereTheySay) {
+    const Facets facets = make_facets(leaves_and_bark());
+    for (const auto& [directions, size] : {std::pair(2, 32), {64, 32}, {256, 64}, {1024, 128}, {20000, 128}}) {
+        const GroundGrid grid = make_ground_grid(facets, 0, directions);
+        ASSERT_EQ(grid.size, size) << directions;
+        for (std::uint32_t texel = 0; texel < grid.texels(); ++texel) {
+            const glm::vec2 centre = grid.centre_of(texel);
+            ASSERT_EQ(grid.texel_at(centre.x, centre.y), int(texel));
+        }
+        const float reach = grid.texel * float(grid.size);
+        EXPECT_EQ(grid.texel_at(grid.low.x - 0.01f * reach, grid.low.y + 0.5f * reach), -1);
+        EXPECT_EQ(grid.texel_at(grid.low.x + 0.5f * reach, grid.low.y + 1.01f * reach), -1);
+    }
+}
+
 TEST(BundlesLineLinks, LinksAreThoseOfASlowWalkAlongTheLines) {
     const PatchScene scene = leaves_and_bark();
     const Facets facets = make_facets(scene);
-    const GroundGrid grid = make_ground_grid(facets, 0);
+    const GroundGrid grid = make_ground_grid(facets, 0, 40);
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;
     for (const glm::vec3& direction :
          {glm::normalize(glm::vec3(0.3f, -0.8f, 0.4f)), glm::normalize(glm::vec3(-0.5f, -0.5f, 0.6f))})

@@ -229,6 +229,38 @@ TEST(BundlesLineRaster, HolesOfCardsLetLinesThrough) {
         expect_same_as_twin(scene, direction, 90);
 }
 
+TEST(BundlesLineRaster, TexturesThatAreLeftRepeat) {
+    PatchScene scene = test::random_crown(40, 3, test::realistic_leaf());
+    AlphaMask mask = test::checkered_mask(4);
+    test::mask_rectangles(scene, mask);
+    mask.wrap_u = TextureWrap::mirror;
+    mask.wrap_v = TextureWrap::clamp;
+    scene.masks.push_back(mask);
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t) {
+        const std::size_t leaf = t / 2;
+        scene.triangle_mask[t] = std::int16_t(leaf % 2);
+        if (t % 2 == 0 && leaf % 3 > 0)
+            for (std::size_t k = 0; k < 6; ++k)
+                scene.uvs[6 * leaf + k] = 2.3f * scene.uvs[6 * leaf + k] - glm::vec2(0.6f, 0.4f);
+    }
+    for (const glm::vec3& direction : kDirections)
+        expect_same_as_twin(scene, direction, 90);
+}
+
+TEST(BundlesLineRaster, MasksOfAnySizeAreDrawnWithTheirOwn) {
+    PatchScene scene = test::random_crown(40, 3, test::realistic_leaf());
+    test::mask_rectangles(scene, test::half_mask());
+    Random random(5);
+    Image alpha(45, 45, 1); // rows that end within a word
+    for (float& value : alpha.pixels)
+        value = random.uniform();
+    scene.masks.push_back({std::make_shared<const Image>(alpha), 0.6f, TextureWrap::repeat, TextureWrap::repeat});
+    for (std::size_t t = 0; t < scene.triangles.size(); ++t)
+        scene.triangle_mask[t] = std::int16_t(t / 2 % 2);
+    for (const glm::vec3& direction : kDirections)
+        expect_same_as_twin(scene, direction, 200);
+}
+
 TEST(BundlesLineRaster, EveryInstructionSetDrawsTheSame) {
     test::with_every_instruction_set([&] {
         expect_same_as_twin(leaves_and_bark(), kDirections[0], 70);

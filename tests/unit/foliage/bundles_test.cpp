@@ -118,6 +118,31 @@ test::SmallTree card_tree() {
     return small;
 }
 
+/// Cards of thin needles: a sixth is solid, and hardly two pixels of a coarse raster hang together.
+test::SmallTree needle_tree() {
+    test::SmallTree small = test::ball_on_a_skeleton(150, 8, test::realistic_leaf(), 3);
+    auto alpha = std::make_shared<Image>(96, 96, 1);
+    for (int y = 0; y < 96; ++y)
+        for (int x = 0; x < 96; ++x)
+            alpha->at(x, y)[0] = (x + y) % 12 < 2 ? 1.f : 0.f;
+    AlphaMask mask;
+    mask.alpha = alpha;
+    test::mask_rectangles(small.scene, mask);
+    return small;
+}
+
+// Steep directions count as much as they should, however few pixels they cover.
+TEST(Bundles, NeedlesSeeTheSkyWithoutBias) {
+    const test::SmallTree small = needle_tree();
+    const Environment sky = test::constant_environment(glm::vec3(1));
+    const PathTracedReference reference = path_trace_reference(small.scene, sky, 1024, 1, silent_progress());
+    const Solution solution = shade(small, sky, bundles_options(400));
+    const Accuracy found =
+        accuracy(leaf_side_radiance(small.scene, solution.radiance), reference.sides, solid_areas(small.scene));
+    EXPECT_LT(found.mre, 0.03);
+    EXPECT_NEAR(found.bias, 0, 0.004);
+}
+
 struct Truth {
     const char* name;
     test::SmallTree small;
@@ -127,7 +152,8 @@ struct Truth {
 TEST(Bundles, ComesNearTheTruthAndKnowsHowNear) {
     const Truth truths[] = {{"realistic ball", test::ball_on_a_skeleton(300, 3, test::realistic_leaf()), 0.035, 0.015},
                             {"bright ball", test::ball_on_a_skeleton(600, 3, test::bright_leaf(), 2), 0.035, 0.015},
-                            {"cards", card_tree(), 0.045, 0.015}};
+                            {"cards", card_tree(), 0.045, 0.015},
+                            {"needles", needle_tree(), 0.045, 0.015}};
     for (const Truth& truth : truths) {
         SCOPED_TRACE(truth.name);
         const Environment environment = test::sky_and_sun();
