@@ -82,6 +82,7 @@ class SpectralBaker final : public Baker {
                        Progress& progress);
     void add_lights(const Image& image, std::span<const ClusterOfLight> in_image, std::span<const DistantLight> others,
                     std::span<glm::vec3> filtered, WorkReport& report);
+    void skip_bands(WorkReport& report) const;
     void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report);
 
     Stopwatch watch_; ///< runs from the beginning of the set-up
@@ -243,6 +244,8 @@ void SpectralBaker::filter_smooth(const Image& image, const Range& range, std::s
                                   std::span(grids_).subspan(group.first, group.count));
     }
     report.stages.push_back({"filtering on rings", watch.cpu(), watch.wall()});
+    if (even)
+        skip_bands(report);
     watch.restart();
     std::vector<float> least((places_.size() + kReadBlock - 1) / kReadBlock);
     parallel_blocks(places_.size(), kReadBlock, [&](std::size_t begin, std::size_t end) {
@@ -254,6 +257,17 @@ void SpectralBaker::filter_smooth(const Image& image, const Range& range, std::s
     if (lowest < -10 * float(settings_.tolerance))
         report.warnings.push_back("filtered light fell to " + text("%.1e", double(lowest)) +
                                   " of the image's brightest remainder and was set to 0: ask for a smaller tolerance");
+}
+
+void SpectralBaker::skip_bands(WorkReport& report) const {
+    std::size_t all = 0, used = 0;
+    for (std::size_t i = 0; i < zonals_.size(); ++i) {
+        all += zonals_[i].size() * zonals_[i].size();
+        used += even_zonals_[i].size() * even_zonals_[i].size();
+    }
+    if (used < all)
+        report.skips.push_back({"highest bands of each lobe", "no part of the image is many times its mean",
+                                std::to_string(all - used) + " of " + std::to_string(all) + " coefficients filtered"});
 }
 
 void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report) {
@@ -283,12 +297,20 @@ void SpectralBaker::add_lights(const Image& image, std::span<const ClusterOfLigh
     for (const DistantLight& light : others)
         clusters.push_back(cluster_of(light, least_spread_));
     const double mean = luminance_integral(image) / (4 * kPiDouble);
-    const float negligible = float(1e-2 * settings_.tolerance * mean);
+    const float negligible = float(std::min(1e-6, 1e-2 * settings_.tolerance) * mean);
     std::uint64_t lobes = 0;
     if (!places_.empty())
         lobes += lights_.add(in_image, negligible, factors_, filtered);
     lobes += lights_.add(clusters, negligible, {}, filtered);
     report.counts.push_back({"lobes of lights", lobes});
+    std::uint64_t most = 0;
+    for (const ClusterOfLight& cluster : in_image)
+        most += cluster.points.size() * places_.size();
+    for (const ClusterOfLight& cluster : clusters)
+        most += cluster.points.size() * layout_.size();
+    if (lobes < most)
+        report.skips.push_back({"lobes of lights out of reach", "they add less than a millionth of the mean radiance",
+                                std::to_string(most - lobes) + " of " + std::to_string(most) + " lobes"});
     report.stages.push_back({"lobes of lights", watch.cpu(), watch.wall()});
 }
 
