@@ -22,6 +22,12 @@ constexpr float step_share = 0.36f, influence_share = 4.5f, kill_share = 0.75f;
 /// Shoots that one attraction point stands for.
 constexpr double shoots_per_point = 2.2;
 
+/// Trees of the same kind and height that cover a share of the ground around.
+Neighbours neighbours_of(const Crown& crown, const GrowthParameters& p) {
+    return {p.stand * p.leaf_area_index / std::max(1e-6, double(crown.height_m - crown.base_m)), crown.base_m,
+            crown.height_m};
+}
+
 } // namespace
 
 Tree grow(const GrowthParameters& grown_parameters, Progress& progress, WorkReport* report) {
@@ -45,7 +51,7 @@ Tree grow(const GrowthParameters& grown_parameters, Progress& progress, WorkRepo
     const float spacing = crown.spacing_m(point_count), step = step_share * spacing;
     Scaffold scaffold = grow_scaffold(parameters, crown, step);
     const std::vector<glm::vec3> points = crown.attractors(point_count, scaffold.limbs);
-    const SkyLight light(points, parameters.leaves * mean_leaf_area(parameters));
+    const SkyLight light(points, parameters.leaves * mean_leaf_area(parameters), neighbours_of(crown, parameters));
     std::vector<WoodNode> wood = std::move(scaffold.nodes);
     colonise(wood, points, light, parameters, {step, influence_share * spacing, kill_share * spacing}, progress);
     GrownSkeleton grown = make_skeleton(std::move(wood), light, crown.height_m, parameters);

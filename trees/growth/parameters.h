@@ -48,7 +48,7 @@ struct GrowthParameters {
 
     double branch_angle = 50, branch_angle_spread = 20, apical_dominance = 0.1;
     double branch_up = 0.1, branch_to_light = 0, branch_zigzag = 16, twig_sag = 0;
-    double light_need = 0, pipe_exponent = 2.0;
+    double light_need = 0, stand = 0, pipe_exponent = 2.0;
     double shoot_up = 0.12, shoot_hang = 0;
 
     double root_flare = 0.9, bark_tile = 0.4;

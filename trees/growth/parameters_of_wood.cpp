@@ -22,8 +22,7 @@ std::vector<ParameterRow> tree_rows() {
         {seed, whole("leaves", &P::leaves, "", 1, 2000000, "Number of leaves; the tree's size follows from it."),
          whole("young_below", &P::young_below, "leaves", 0, 2000000,
                "With fewer leaves it is a young tree: it has a leader, is slender and leafy far down, and its "
-               "twigs don't hang; 0: never.",
-               "Halle, Oldeman and Tomlinson 1978, Tropical Trees and Forests")});
+               "twigs don't hang; 0: never.")});
 }
 
 std::vector<ParameterRow> crown_rows() {
@@ -101,6 +100,10 @@ std::vector<ParameterRow> branch_rows() {
               "How far thin wood turns down with every tenth of the tree's height that it is long."),
          real("light_need", &P::light_need, "of the open sky", 0, 0.9,
               "Twigs with less light than this die and are shed.", "Wiesner 1907, Der Lichtgenuss der Pflanzen"),
+         real("stand", &P::stand, "of the ground", 0, 1,
+              "Share of the ground around that other crowns of its kind cover: 0 for a tree in the open, 1 in closed "
+              "forest, where twigs low down get less than light_need and the bole is bare.",
+              "Monsi and Saeki 1953, Japanese Journal of Botany 14: light in a stand"),
          real("shoot_up", &P::shoot_up, "", -1, 1, "How strongly shoots turn up."),
          real("shoot_hang", &P::shoot_hang, "of the height", 0, 0.9,
               "Length of the longest hanging shoots of a weeping tree; 0: shoots don't hang."),

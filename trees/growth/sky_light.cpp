@@ -15,7 +15,7 @@ constexpr float shown_share = 0.5f;
 
 } // namespace
 
-SkyLight::SkyLight(const std::vector<glm::vec3>& points, double leaf_area_m2) {
+SkyLight::SkyLight(const std::vector<glm::vec3>& points, double leaf_area_m2, const Neighbours& neighbours) {
     glm::vec3 high = low_ = points.empty() ? glm::vec3(0.f) : points[0];
     for (const glm::vec3& p : points) {
         low_ = glm::min(low_, p);
@@ -54,6 +54,11 @@ SkyLight::SkyLight(const std::vector<glm::vec3>& points, double leaf_area_m2) {
                         if (glm::any(glm::lessThan(c, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(c, cells_)))
                             break;
                         depth += shown_share * cell_ * density[cell_index(c)];
+                    }
+                    if (neighbours.leaf_area_density > 0) {
+                        const float left_at = low_.y + cell_ * (place.y - 0.5f * directions[d].y);
+                        const float up = std::max(0.f, neighbours.top_m - std::max(left_at, neighbours.base_m));
+                        depth += shown_share * float(neighbours.leaf_area_density) * up / directions[d].y;
                     }
                     const float light = std::exp(-depth) * solid_angle;
                     for (std::size_t k = 0; k < 4; ++k)

@@ -9,9 +9,9 @@ namespace kokage {
 double youth(const GrowthParameters& parameters);
 
 /// The parameters of a tree of this age: those of the grown tree where youth() is 0, drawn to a young tree's the more
-/// the younger it is. A stem that reaches the top and bears limbs from low down (every tree starts with one
-/// orthotropic axis, and those that lose it do so later: Hallé, Oldeman and Tomlinson 1978, Tropical Trees and
-/// Forests), a crown that is taller than wide and loosely filled, thin shoots that bear their leaves without bending.
+/// the younger it is. A stem that reaches the top and bears limbs from low down (all ten species begin as one
+/// upright axis; those whose trunk dissolves in limbs lose it later), a crown that is taller than wide and loosely
+/// filled, thin shoots that bear their leaves without bending.
 GrowthParameters at_its_age(const GrowthParameters& parameters);
 
 } // namespace kokage

@@ -338,16 +338,16 @@ TEST(ForeignTree, EzTreesBranchesBearTheirLeavesAgain) {
     const auto data = data_folder();
     if (!data)
         GTEST_SKIP() << "skipped: KOKAGE_DATA is not set";
-    for (const auto& [file, branches, leaves] : {std::tuple{"eztree_oak_medium.glb", 140u, 38u},
-                                                 {"eztree_ash_large.glb", 220u, 22u},
-                                                 {"eztree_bush_1.glb", 96u, 26u}}) {
+    for (const auto& [file, branches, leaves, recovered] : {std::tuple{"eztree_oak_medium.glb", 140u, 38u, 1.0},
+                                                            {"eztree_ash_large.glb", 220u, 22u, 0.89},
+                                                            {"eztree_bush_1.glb", 96u, 26u, 0.97}}) {
         const Tree tree = read_tree(*data / "trees" / file);
         ASSERT_EQ(tree.skeleton.branches.size(), branches) << file;
         std::vector<std::uint32_t> borne(branches, 0);
         for (const Leaf& leaf : tree.leaves)
             ++borne[std::size_t(leaf.branch)];
         const auto right = std::count(borne.begin(), borne.end(), leaves);
-        EXPECT_GE(double(right), 0.85 * double(branches)) << file; // measured: 0.90 and more
+        EXPECT_GE(double(right), recovered * double(branches)) << file; // measured: 140, 197 and 94
         EXPECT_EQ(std::count_if(tree.skeleton.branches.begin(), tree.skeleton.branches.end(),
                                 [](const Branch& branch) { return branch.parent < 0; }),
                   1)

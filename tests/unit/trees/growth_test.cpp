@@ -321,6 +321,28 @@ TEST(Growth, ShadedTwigsAreShedAndTheirLeavesStandElsewhere) {
     EXPECT_GT(few, 1.05f * some);
 }
 
+// In closed forest the twigs low down of trees that are leafy to the ground get less light than they need: crowns are
+// raised.
+TEST(Growth, NeighboursClearTheBole) {
+    const auto crown_base = [](GrowthParameters p, double stand) {
+        p.leaves = 10000;
+        p.stand = stand;
+        std::vector<float> heights;
+        for (const Leaf& leaf : grow(p).leaves)
+            heights.push_back(leaf.centre.y);
+        EXPECT_EQ(heights.size(), 10000u);
+        std::nth_element(heights.begin(), heights.begin() + 1000, heights.end());
+        return heights[1000];
+    };
+    for (const char* species : {"birch", "spruce"}) {
+        GrowthParameters p = find_species(species).parameters;
+        const double open = crown_base(p, 0), forest = crown_base(p, 1);
+        EXPECT_GT(forest, 1.15 * open) << species;
+        p.light_need = 0;
+        EXPECT_NEAR(crown_base(p, 1), crown_base(p, 0), 1e-3) << species << ": light alone sheds";
+    }
+}
+
 TEST(Growth, BranchesTurnUpDownAndToTheLightAsAsked) {
     GrowthParameters parameters = oak_with(6000);
     const auto mean_rise = [](const Tree& tree) {

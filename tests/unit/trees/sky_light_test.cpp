@@ -56,6 +56,38 @@ TEST(SkyLight, AgreesWithRaysThroughAnEvenBall) {
     }
 }
 
+// Neighbours are a level layer around the box that the own foliage stands in: a ray meets it from where it leaves the
+// box up to the layer's top.
+TEST(SkyLight, AgreesWithRaysThroughALayerOfNeighbours) {
+    constexpr double density = 0.4, base = 8, top = 16;
+    const std::vector<glm::vec3> points = points_in_ball(20000);
+    glm::dvec3 low(1e9), high(-1e9);
+    for (const glm::vec3& p : points) {
+        low = glm::min(low, glm::dvec3(p));
+        high = glm::max(high, glm::dvec3(p));
+    }
+    const SkyLight light(points, 0.0, {density, float(base), float(top)});
+    for (const glm::dvec3& place : {glm::dvec3(0, 7.5, 0), glm::dvec3(0, 10, 0), glm::dvec3(2, 12, -1)}) {
+        Random random(9);
+        double sum = 0;
+        constexpr int rays = 20000;
+        for (int i = 0; i < rays; ++i) {
+            const double y = random.uniform_double(), azimuth = 2 * kPiDouble * random.uniform_double(),
+                         r = std::sqrt(1 - y * y);
+            const glm::dvec3 d(r * std::cos(azimuth), y, r * std::sin(azimuth));
+            double out = 1e9;
+            for (glm::length_t k = 0; k < 3; ++k)
+                out = std::min(out, ((d[k] > 0 ? high[k] : low[k]) - place[k]) / d[k]);
+            const double within = std::max(0.0, top - std::max(base, place.y + out * y)) / std::max(y, 1e-9);
+            sum += std::exp(-0.5 * density * within) / rays;
+        }
+        EXPECT_LT(sum, 0.75);
+        EXPECT_NEAR(light.relative(glm::vec3(place)), sum, 0.1 * sum + 0.02);
+    }
+    const SkyLight alone(points, 0.0, {0.0, float(base), float(top)});
+    EXPECT_NEAR(alone.relative({0, 7.5f, 0}), 1, 1e-4);
+}
+
 TEST(SkyLight, MoreLeavesNeverMeanMoreLight) {
     const std::vector<glm::vec3> points = points_in_ball(3000);
     float before = 1.1f;
