@@ -35,14 +35,18 @@ std::string judged_note(const TexelSample& sample, std::span<const glm::vec3> fi
 /// Bakes a cube by a method, with set-up and times on one core, and judges it.
 void measure_cube(const ExperimentContext& context, const char* experiment, const Environment& environment,
                   const VoxelCube& cube, const TexelSample& sample, const std::vector<glm::vec3>& truth,
-                  BakeMethod method) {
+                  const BakerSettings& settings) {
     context.progress.throw_if_stopped();
-    ReflectionRecord record = record_of(experiment, environment, method, cube.scale().cube_size());
+    ReflectionRecord record = record_of(experiment, environment, settings.method, cube.scale().cube_size());
+    if (settings.tolerance != BakerSettings{}.tolerance) {
+        char text[32];
+        std::snprintf(text, sizeof text, ", tolerance %g", settings.tolerance);
+        record.method += text;
+    }
     WorkReport report;
     const Stopwatch watch;
-    const std::unique_ptr<Baker> baker =
-        make_baker(cube.layout(), environment.remainder.width, environment.remainder.height, {.method = method}, report,
-                   context.progress);
+    const std::unique_ptr<Baker> baker = make_baker(cube.layout(), environment.remainder.width,
+                                                    environment.remainder.height, settings, report, context.progress);
     record.setup_cpu_seconds = watch.cpu();
     const std::vector<glm::vec3> filtered =
         timed_bake(*baker, environment, cube.layout().size(), context.progress, record);
@@ -70,8 +74,10 @@ void measure_spectral(const ExperimentContext& context) {
         const TexelSample sample = sample_of_all_shells(cube.layout(), context.quick ? 1000 : 8000);
         for (const Environment& environment : clamped_surroundings(context)) {
             const std::vector<glm::vec3> truth = true_texels(sample, environment);
-            for (const BakeMethod method : {BakeMethod::spectral, BakeMethod::table})
-                measure_cube(context, "spectral", environment, cube, sample, truth, method);
+            for (const BakerSettings& settings :
+                 {BakerSettings{}, BakerSettings{.tolerance = 4e-4}, BakerSettings{.tolerance = 2e-3},
+                  BakerSettings{.method = BakeMethod::table}})
+                measure_cube(context, "spectral", environment, cube, sample, truth, settings);
         }
     }
 }
@@ -83,7 +89,7 @@ void measure_hdr(const ExperimentContext& context) {
     for (const Environment& environment : hdr_surroundings(context)) {
         const std::vector<glm::vec3> truth = true_texels(sample, environment);
         for (const BakeMethod method : {BakeMethod::spectral, BakeMethod::table})
-            measure_cube(context, "hdr", environment, cube, sample, truth, method);
+            measure_cube(context, "hdr", environment, cube, sample, truth, {.method = method});
     }
 }
 

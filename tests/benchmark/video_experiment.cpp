@@ -28,18 +28,20 @@ void measure_video(const ExperimentContext& context) {
     const ThreadsFor two_cores(kThreads);
     const Environment first = clamped_surroundings(context).back();
     VoxelCube cube(LobeKind::phong, RoughnessScale::solved(kSize));
-    for (const BakeMethod method : {BakeMethod::spectral, BakeMethod::table}) {
+    for (const auto& [name, settings] : {std::pair("spectral", BakerSettings{}),
+                                         std::pair("spectral, tolerance 0.0004", BakerSettings{.tolerance = 4e-4}),
+                                         std::pair("table", BakerSettings{.method = BakeMethod::table})}) {
         context.progress.throw_if_stopped();
         ReflectionRecord record;
         record.experiment = "video";
         record.environment = first.description;
-        record.method = bake_method_name(method);
+        record.method = name;
         record.lobe = "phong";
         record.size = kSize;
         WorkReport report;
         const Stopwatch setting_up;
         const std::unique_ptr<Baker> baker = make_baker(cube.layout(), first.remainder.width, first.remainder.height,
-                                                        {.method = method}, report, context.progress);
+                                                        settings, report, context.progress);
         record.setup_cpu_seconds = setting_up.cpu();
         std::vector<glm::vec3> filtered(cube.layout().size());
         double cpu = 0, wall = 0;

@@ -233,6 +233,17 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
     }
 }
 
+TEST(Bake, CtrlCLeavesNoHalfFile) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(512, 256));
+    const ProgramRun run = run_kokage({"bake", "in.exr", "--method", "brute-force", "--container", "cube", "--lobe",
+                                       "ggx", "--size", "256", "-o", "m.exr"},
+                                      folder.path(), {.interrupt_after_seconds = 2.5});
+    EXPECT_EQ(run.status, 130) << run.errors;
+    EXPECT_NE(run.errors.find("stopped; nothing was written"), std::string::npos) << run.errors;
+    EXPECT_EQ(folder.files(), Words({"in.exr"}));
+}
+
 TEST(Bake, AVideoNamesItsBrokenFramesAndGoesOnWhereItStopped) {
     const TemporaryFolder folder;
     for (int i : {1, 2, 4})
