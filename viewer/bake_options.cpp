@@ -73,7 +73,7 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
         ->capture_default_str()
         ->group("Method");
     app.add_option("--stored", o.stored,
-                   "table: a file that keeps the weights, which do not depend on the light; read if it is there, else "
+                   "spectral, table: a file that keeps what does not depend on the light; read if it is there, else "
                    "made")
         ->type_name("FILE")
         ->group("Method");
@@ -159,9 +159,8 @@ void complete_method(BakeOptions& o) {
                               "only --method brute-force");
     if (!table && (o.threshold || o.weights != "matched"))
         refuse(o.threshold ? "--threshold" : "--weights", "it shapes the table alone; add --method table");
-    if (!o.stored.empty() && !table)
-        refuse("--stored", "it keeps the table's weights, and " + o.method +
-                               " keeps nothing between runs; leave it out, or add --method table");
+    if (!o.stored.empty() && !spectral && !table)
+        refuse("--stored", "brute-force prepares nothing that could be kept; leave it out");
     o.baker.tolerance = o.tolerance.value_or(o.baker.tolerance);
     o.baker.table.threshold = o.threshold.value_or(o.baker.table.threshold);
     o.baker.table.weights = table_weights_from_name(o.weights);

@@ -54,8 +54,8 @@ std::unique_ptr<Baker> make_baker(const TexelLayout& layout, int image_width, in
     case BakeMethod::spectral:
         break;
     }
-    return spectral_baker(layout, image_width, image_height, {.tolerance = settings.tolerance, .stored_setup = {}},
-                          report, progress);
+    return spectral_baker(layout, image_width, image_height,
+                          {.tolerance = settings.tolerance, .stored_setup = settings.stored_setup}, report, progress);
 }
 
 bool is_same_everywhere(const Environment& surroundings) {

@@ -11,7 +11,7 @@ struct BakerSettings {
     BakeMethod method = BakeMethod::spectral;
     double tolerance = 1e-4;              ///< spectral: SpectralSettings::tolerance
     TableSettings table{};                ///< table
-    std::filesystem::path stored_setup{}; ///< table: where its weights are kept between runs; empty = nowhere
+    std::filesystem::path stored_setup{}; ///< spectral, table: where set-up is kept between runs; empty = nowhere
 };
 
 /// For a layout and a size of image. Adds the stages of its set-up to the report. Throws InputError, Stopped.

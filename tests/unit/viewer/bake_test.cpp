@@ -104,21 +104,24 @@ TEST(Bake, TakesSkyConstantAndLights) {
     EXPECT_NEAR(std::get<ShellMap>(read_map(folder / "b.exr").map).lookup({0, 1, 0}, 5).y, 0.5f, 1e-3f);
 }
 
-TEST(Bake, AStoredTableIsMadeOnceAndMapsStayTheSame) {
+TEST(Bake, AStoredSetupIsMadeOnceAndMapsStayTheSame) {
     const TemporaryFolder folder;
     save_image(folder / "in.exr", gradient_image(32, 16));
-    const Words words = small_bake("in.exr", {"--method", "table", "--stored", "t.setup", "-o", "m.exr"});
-    ASSERT_EQ(run_kokage(words, folder.path()).status, 0);
-    const std::vector<std::byte> first = texels_of(folder / "m.exr");
-    ASSERT_TRUE(std::filesystem::exists(folder / "t.setup"));
-    const ProgramRun again = run_kokage(words, folder.path());
-    ASSERT_EQ(again.status, 0);
-    EXPECT_NE(again.output.find("reading the weight table"), std::string::npos) << again.output;
-    EXPECT_TRUE(texels_of(folder / "m.exr") == first);
-    std::ofstream(folder / "t.setup") << "something else";
-    const ProgramRun refused = run_kokage(words, folder.path());
-    EXPECT_EQ(refused.status, 2);
-    EXPECT_NE(refused.errors.find("t.setup"), std::string::npos) << refused.errors;
+    for (const std::string method : {"spectral", "table"}) {
+        const std::filesystem::path stored = folder / (method + ".setup");
+        const Words words = small_bake("in.exr", {"--method", method, "--stored", stored.string(), "-o", "m.exr"});
+        ASSERT_EQ(run_kokage(words, folder.path()).status, 0) << method;
+        const std::vector<std::byte> first = texels_of(folder / "m.exr");
+        ASSERT_TRUE(std::filesystem::exists(stored)) << method;
+        const auto written = std::filesystem::last_write_time(stored);
+        ASSERT_EQ(run_kokage(words, folder.path()).status, 0) << method;
+        EXPECT_EQ(std::filesystem::last_write_time(stored), written) << method << ": read, not made again";
+        EXPECT_TRUE(texels_of(folder / "m.exr") == first) << method;
+        std::ofstream(stored) << "something else";
+        const ProgramRun refused = run_kokage(words, folder.path());
+        EXPECT_EQ(refused.status, 2) << method;
+        EXPECT_NE(refused.errors.find(method + ".setup"), std::string::npos) << refused.errors;
+    }
 }
 
 TEST(Bake, SameBitsWithAnyNumberOfThreads) {
