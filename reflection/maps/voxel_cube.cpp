@@ -60,7 +60,8 @@ float VoxelCube::smoothness(double parameter) const {
 }
 
 glm::vec3 VoxelCube::lookup(const glm::vec3& direction, float smoothness) const {
-    const float radius = 0.5f * float(size_ - 2) * std::clamp(smoothness, least_smoothness(), 1.f);
+    const float sphere = 0.5f * float(size_ - 2), wanted = sphere * std::clamp(smoothness, 0.f, 1.f);
+    const float radius = std::min(std::sqrt(wanted * wanted + centre_radius * centre_radius), sphere);
     const glm::vec3 place = 0.5f * float(size_ - 1) + radius * direction;
     const glm::ivec3 cell = glm::clamp(glm::ivec3(place), 0, size_ - 2);
     const glm::vec3 f = place - glm::vec3(cell);

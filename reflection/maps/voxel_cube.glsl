@@ -7,6 +7,8 @@ uniform highp sampler3D voxelCube;
 
 /// Filtered radiance in a direction (unit) at a smoothness λ in [0, 1], VoxelCube::smoothness().
 highp vec3 voxelLookup(highp vec3 direction, highp float smoothness) {
-    highp float size = float(textureSize(voxelCube, 0).x), voxels = size - 2.0; // without the guards
-    return textureLod(voxelCube, 0.5 + 0.5 * clamp(smoothness, 1.0 / voxels, 1.0) * voxels / size * direction, 0.0).rgb;
+    highp float size = float(textureSize(voxelCube, 0).x), sphere = 0.5 * (size - 2.0); // without the guards
+    highp float wanted = sphere * clamp(smoothness, 0.0, 1.0);
+    highp float radius = min(sqrt(wanted * wanted + 1.0), sphere); // VoxelCube::centre_radius
+    return textureLod(voxelCube, 0.5 + radius / size * direction, 0.0).rgb;
 }

@@ -3,9 +3,11 @@
 
 #include "common/services/error.h"
 #include "common/services/random.h"
+#include "reflection/maps/brute_force_baker.h"
 #include "reflection/maps/face_chart.h"
 #include "tests/unit/common/scene_builders.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <hwy/targets.h>
@@ -103,6 +105,58 @@ TEST(ShellMap, SettingsThatMakeNoSenseAreRefused) {
     EXPECT_THROW(ShellMap({.texels_a_width = nan}), InputError);
     ShellMap map({.most_parameter = 2});
     EXPECT_THROW(map.set_texels(std::vector<glm::vec3>(3)), InputError);
+}
+
+/// The paper's kind of colour pattern: hue once round, saturation downwards.
+Environment colour_rings(int width) {
+    Environment environment;
+    environment.remainder = Image(width, width / 2, 3);
+    for (int y = 0; y < width / 2; ++y)
+        for (int x = 0; x < width; ++x)
+            for (int c = 0; c < 3; ++c) {
+                const double hue = std::fmod(6.0 * x / width + 4.0 * c, 6.0), saturation = (y + 0.5) / (width / 2);
+                environment.remainder.at(x, y)[c] =
+                    float(0.5 + saturation * (std::clamp(std::abs(hue - 3) - 1, 0.0, 1.0) - 0.5));
+            }
+    return environment;
+}
+
+TEST(ShellMap, BetweenTexelsAndShellsItIsNearBruteForce) {
+    const Environment environment = colour_rings(128);
+    for (const TexelFilter filter : {TexelFilter::bilinear, TexelFilter::cubic}) {
+        ShellMap map({.most_parameter = 300, .filter = filter});
+        std::vector<glm::vec3> texels(map.layout().size());
+        WorkReport report;
+        brute_force_baker(map.layout(), 128, 64)->bake(environment, texels, report);
+        map.set_texels(texels);
+        Random random(10);
+        double sum = 0, largest = 0;
+        constexpr int count = 1500;
+        for (int i = 0; i < count; ++i) {
+            const glm::vec3 direction = random_direction(random);
+            const double parameter = std::exp(random.uniform_double() * std::log(300.0));
+            const glm::dvec3 truth =
+                filtered_by_brute_force(environment, {LobeKind::phong, parameter}, glm::dvec3(direction));
+            const glm::dvec3 d = 255.0 * glm::abs(glm::dvec3(map.lookup(direction, parameter)) - truth);
+            sum += (d.r + d.g + d.b) / 3;
+            largest = std::max({largest, d.r, d.g, d.b});
+        }
+        EXPECT_LT(sum / count, filter == TexelFilter::cubic ? 0.05 : 0.07);
+        EXPECT_LT(largest, filter == TexelFilter::cubic ? 1 : 3);
+        // No step across the edges of faces.
+        float step = 0;
+        for (int i = 0; i < 2000; ++i) {
+            const float along = random.uniform(-1, 1), exponent = std::exp(random.uniform(0, 5.7f));
+            const glm::vec3 one = glm::normalize(glm::vec3(1, 0.99999f, along));
+            const glm::vec3 other = glm::normalize(glm::vec3(0.99999f, 1, along));
+            const glm::vec3 d = glm::abs(map.lookup(one, exponent) - map.lookup(other, exponent));
+            step = std::max({step, d.x, d.y, d.z});
+        }
+        EXPECT_LT(255 * step, 0.25f);
+        RecordProperty(filter == TexelFilter::cubic ? "cubic" : "bilinear", std::to_string(sum / count) + " " +
+                                                                                std::to_string(largest) + " step " +
+                                                                                std::to_string(255 * step));
+    }
 }
 
 void expect_many_as_one_by_one(const ShellSettings& settings) {

@@ -61,7 +61,8 @@ TEST(VoxelCube, LookupIsTrilinear) {
     for (int i = 0; i < 500; ++i) {
         const glm::vec3 direction = random_direction(random);
         const float smoothness = random.uniform();
-        const glm::dvec3 place = 4.5 + 4.0 * std::max(double(smoothness), 1 / 8.0) * glm::dvec3(direction);
+        const double distance = std::min(std::hypot(4.0 * double(smoothness), 1.0), 4.0);
+        const glm::dvec3 place = 4.5 + distance * glm::dvec3(direction);
         glm::dvec3 sum(0);
         for (int v = 0; v < 1000; ++v)
             sum += tent(place.x - v % 10) * tent(place.y - v / 10 % 10) * tent(place.z - v / 100) *
