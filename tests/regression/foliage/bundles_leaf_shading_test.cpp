@@ -87,6 +87,7 @@ TEST(BundlesLeafShading, KeepsTheErrorThatWasAskedFor) {
 TEST(BundlesLeafShading, AGrownTreeWithBark) {
     GrowthParameters parameters = oak_parameters();
     parameters.leaves = 1200;
+    parameters.young_below = 0; // an old tree's crowded shoots
     const Tree oak = grow(parameters);
     PatchOptions patch_options;
     patch_options.ground = Ground{};

@@ -64,7 +64,9 @@ TEST(Bake, WritesAMapAndAReportAndSaysWhere) {
     EXPECT_EQ(report["settings"]["method"], "spectral");
     EXPECT_EQ(report["map"]["bytes"], shells.bytes());
     EXPECT_EQ(report["inputs"]["surroundings"]["width"], 32);
-    EXPECT_EQ(report["skipped"].size(), 1u);
+    EXPECT_TRUE(std::any_of(report["skipped"].begin(), report["skipped"].end(), [](const Json& skip) {
+        return skip["what"].get<std::string>().find("rougher or smoother") != std::string::npos;
+    })) << report["skipped"];
     EXPECT_GT(report["stages"].size(), 2u);
 }
 
