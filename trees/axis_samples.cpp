@@ -37,6 +37,14 @@ AxisSamples sample_axes(const Skeleton& skeleton, std::size_t first_branch) {
     return axes;
 }
 
+AxisPlace nearest_on_piece(const AxisSamples::Sample& a, const AxisSamples::Sample& b, const glm::vec3& place) {
+    const glm::vec3 along = b.position - a.position;
+    const float square = glm::dot(along, along);
+    const float t = square > 0 ? std::clamp(glm::dot(place - a.position, along) / square, 0.f, 1.f) : 0.f;
+    const glm::vec3 here = a.position + t * along;
+    return {here, glm::mix(a.radius_m, b.radius_m, t), glm::distance(here, place), a.branch, true};
+}
+
 AxisPlace nearest_around(const std::vector<AxisSamples::Sample>& samples, std::size_t index, const glm::vec3& place) {
     const AxisSamples::Sample& sample = samples[index];
     AxisPlace best{sample.position, sample.radius_m, glm::distance(sample.position, place), sample.branch, true};
@@ -44,12 +52,8 @@ AxisPlace nearest_around(const std::vector<AxisSamples::Sample>& samples, std::s
         const AxisSamples::Sample &a = samples[first], &b = samples[first + 1];
         if (a.branch != b.branch)
             return;
-        const glm::vec3 along = b.position - a.position;
-        const float square = glm::dot(along, along);
-        const float t = square > 0 ? std::clamp(glm::dot(place - a.position, along) / square, 0.f, 1.f) : 0.f;
-        const glm::vec3 here = a.position + t * along;
-        if (const float distance = glm::distance(here, place); distance < best.distance)
-            best = {here, glm::mix(a.radius_m, b.radius_m, t), distance, a.branch, true};
+        if (const AxisPlace on_piece = nearest_on_piece(a, b, place); on_piece.distance < best.distance)
+            best = on_piece;
     };
     if (index > 0)
         try_piece(index - 1);

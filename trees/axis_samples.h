@@ -29,6 +29,9 @@ struct AxisPlace {
     bool found = false;
 };
 
+/// Of the straight piece of axis between two samples of one branch, what is nearest to a place.
+AxisPlace nearest_on_piece(const AxisSamples::Sample& a, const AxisSamples::Sample& b, const glm::vec3& place);
+
 /// Of the sample at `index` and the two pieces of axis that it joins, what is nearest to a place.
 AxisPlace nearest_around(const std::vector<AxisSamples::Sample>& samples, std::size_t index, const glm::vec3& place);
 

@@ -24,11 +24,14 @@ AxisPlace nearest_on(const Skeleton& skeleton, std::uint32_t branch, const glm::
 
 void StandingWood::add(const Skeleton& skeleton, std::size_t first_branch) {
     skeleton_ = &skeleton;
-    for (const AxisSamples::Sample& sample : sample_axes(skeleton, first_branch).samples) {
+    const std::vector<AxisSamples::Sample> samples = sample_axes(skeleton, first_branch).samples;
+    for (std::size_t i = 0; i < samples.size(); ++i) {
+        const AxisSamples::Sample& sample = samples[i];
         const Branch& branch = skeleton.branches[sample.branch];
-        const float radius = std::max(sample.radius_m, 0.25f * branch.nodes[0].radius_m); // tips may have none
-        if (radius > 0)
-            by_radius_[std::ilogb(radius)].add(sample);
+        if (i > 0 && samples[i - 1].branch == sample.branch)
+            add_piece(samples[i - 1], sample);
+        else if (branch.nodes.size() == 1)
+            add_piece(sample, sample);
         if (branch.parent >= 0) {
             const Branch::Node& start = branch.nodes[0];
             const float parent_radius = nearest_on(skeleton, std::uint32_t(branch.parent), start.position).radius_m;
@@ -37,6 +40,13 @@ void StandingWood::add(const Skeleton& skeleton, std::size_t first_branch) {
         }
         outer_.add(sample);
     }
+}
+
+void StandingWood::add_piece(const AxisSamples::Sample& a, const AxisSamples::Sample& b) {
+    const float radius = std::max(a.radius_m, b.radius_m); // tips may have none
+    if (radius > 0)
+        by_size_[{std::ilogb(radius), std::ilogb(std::max(glm::distance(a.position, b.position), 0.5f * radius))}].add(
+            a, b);
 }
 
 AxisPlace StandingWood::bearer_of(AxisPlace axis, const glm::vec3& place) const {
@@ -51,11 +61,14 @@ AxisPlace StandingWood::bearer_of(AxisPlace axis, const glm::vec3& place) const 
 WoodHold StandingWood::on_axis(const glm::vec3& place) const {
     WoodHold hold;
     float least = kOnAxis;
-    for (const auto& [magnitude, wood] : by_radius_) {
-        const AxisPlace axis = wood.nearest(place);
-        if (axis.distance <= least * axis.radius_m) {
-            hold.axis = axis;
-            least = axis.radius_m > 0 ? axis.distance / axis.radius_m : 0.f;
+    for (const auto& [magnitudes, pieces] : by_size_) {
+        const float radius = std::ldexp(1.f, magnitudes[0] + 1), length = std::ldexp(1.f, magnitudes[1] + 1);
+        for (const std::uint32_t piece : pieces.middles.within(place, kOnAxis * radius + 0.5f * length)) {
+            const AxisPlace axis = nearest_on_piece(pieces.ends[piece][0], pieces.ends[piece][1], place);
+            if (axis.distance <= least * axis.radius_m) {
+                hold.axis = axis;
+                least = axis.radius_m > 0 ? axis.distance / axis.radius_m : 0.f;
+            }
         }
     }
     if (!hold.axis.found)

@@ -2,6 +2,7 @@
 // Wood that pieces of bark may hang on, while a skeleton grows out of them. Private to trees.
 #include "trees/axis_samples.h"
 
+#include <array>
 #include <limits>
 #include <map>
 
@@ -40,11 +41,22 @@ class StandingWood {
             return found.found() ? nearest_around(samples, found.index, place) : AxisPlace{};
         }
     };
+    /// Pieces of axes of about one thickness and length. A piece may pass through a place whose nearest sample is
+    /// another branch's, so all pieces near it are looked at.
+    struct Pieces {
+        std::vector<std::array<AxisSamples::Sample, 2>> ends;
+        GrowingPointTree middles;
+        void add(const AxisSamples::Sample& a, const AxisSamples::Sample& b) {
+            ends.push_back({a, b});
+            middles.add(0.5f * (a.position + b.position));
+        }
+    };
+    void add_piece(const AxisSamples::Sample& a, const AxisSamples::Sample& b);
     AxisPlace bearer_of(AxisPlace axis, const glm::vec3& place) const;
 
     const Skeleton* skeleton_ = nullptr;
-    std::map<int, Wood> by_radius_; ///< by the binary logarithm of the radius
-    Wood outer_;                    ///< without what lies within parents
+    std::map<std::array<int, 2>, Pieces> by_size_; ///< by the binary logarithms of the larger radius and of the length
+    Wood outer_;                                   ///< without what lies within parents
 };
 
 } // namespace kokage

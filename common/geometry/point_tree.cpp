@@ -76,6 +76,28 @@ NearestPoint PointTree::nearest(const glm::vec3& place) const {
     return result_of(square, index);
 }
 
+void PointTree::collect(std::size_t begin, std::size_t end, const glm::vec3& place, double square,
+                        std::vector<std::uint32_t>& found) const {
+    if (begin >= end)
+        return;
+    const std::size_t middle = begin + (end - begin) / 2;
+    const Point& point = points_[middle];
+    if (square_distance(point.position, place) <= square)
+        found.push_back(point.index);
+    const double offset = double(place[axes_[middle]]) - double(point.position[axes_[middle]]);
+    if (offset <= 0 || offset * offset <= square)
+        collect(begin, middle, place, square, found);
+    if (offset >= 0 || offset * offset <= square)
+        collect(middle + 1, end, place, square, found);
+}
+
+std::vector<std::uint32_t> PointTree::within(const glm::vec3& place, float distance) const {
+    std::vector<std::uint32_t> found;
+    collect(0, points_.size(), place, double(distance) * double(distance), found);
+    std::sort(found.begin(), found.end());
+    return found;
+}
+
 void GrowingPointTree::add(const glm::vec3& point) {
     std::vector<glm::vec3> points{point};
     std::vector<std::uint32_t> indices{std::uint32_t(count_++)};
@@ -98,6 +120,14 @@ NearestPoint GrowingPointTree::nearest(const glm::vec3& place) const {
     for (const PointTree& tree : trees_)
         tree.search(0, tree.points_.size(), place, square, index);
     return result_of(square, index);
+}
+
+std::vector<std::uint32_t> GrowingPointTree::within(const glm::vec3& place, float distance) const {
+    std::vector<std::uint32_t> found;
+    for (const PointTree& tree : trees_)
+        tree.collect(0, tree.points_.size(), place, double(distance) * double(distance), found);
+    std::sort(found.begin(), found.end());
+    return found;
 }
 
 } // namespace kokage

@@ -22,6 +22,8 @@ class PointTree {
     /// `indices`: what `nearest` reports for each point; empty = 0, 1, 2, ...
     explicit PointTree(std::span<const glm::vec3> points, std::span<const std::uint32_t> indices = {});
     NearestPoint nearest(const glm::vec3& place) const;
+    /// Every point at most so far away, in rising order.
+    std::vector<std::uint32_t> within(const glm::vec3& place, float distance) const;
     std::size_t size() const { return points_.size(); }
 
   private:
@@ -29,6 +31,8 @@ class PointTree {
     void build(std::size_t begin, std::size_t end);
     void search(std::size_t begin, std::size_t end, const glm::vec3& place, double& best_square,
                 std::uint32_t& best) const;
+    void collect(std::size_t begin, std::size_t end, const glm::vec3& place, double square,
+                 std::vector<std::uint32_t>& found) const;
 
     struct Point {
         glm::vec3 position;
@@ -43,6 +47,7 @@ class GrowingPointTree {
   public:
     void add(const glm::vec3& point); ///< its index is the number of points before it
     NearestPoint nearest(const glm::vec3& place) const;
+    std::vector<std::uint32_t> within(const glm::vec3& place, float distance) const; ///< as PointTree's
     std::size_t size() const { return count_; }
 
   private:
