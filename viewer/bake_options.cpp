@@ -59,7 +59,7 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
         ->group("Method");
     app.add_option("--tolerance", o.tolerance,
                    "spectral: largest error, as a share of 1 or of the brightest light left when lamps are split off "
-                   "(otherwise 0.0001)")
+                   "(otherwise 0.00015)")
         ->type_name("E")
         ->group("Method");
     app.add_option("--threshold", o.threshold,

@@ -1,6 +1,7 @@
 #pragma once
 // Any of the three bakers, by its method.
 #include "reflection/maps/baker.h"
+#include "reflection/maps/spectral_baker.h"
 #include "reflection/maps/weight_table.h"
 
 #include <filesystem>
@@ -9,8 +10,8 @@ namespace kokage {
 
 struct BakerSettings {
     BakeMethod method = BakeMethod::spectral;
-    double tolerance = 1e-4;              ///< spectral: SpectralSettings::tolerance
-    TableSettings table{};                ///< table
+    double tolerance = SpectralSettings{}.tolerance; ///< spectral
+    TableSettings table{};                           ///< table
     std::filesystem::path stored_setup{}; ///< spectral, table: where set-up is kept between runs; empty = nowhere
 };
 

@@ -16,7 +16,7 @@ struct SpectralSettings {
     /// Largest error that is asked for, in radiance where the image is at most 1; above that relative to the image's
     /// brightest remainder. Bands, grids and shells follow from it. Photographs stay at about half of it, noise of
     /// single pixels at about it; Phong's edge at a right angle (Λ < 0.05) may exceed it several times.
-    double tolerance = 1e-4;
+    double tolerance = 1.5e-4;
     /// Where the prepared tables are kept between runs (a file with a checked header, made if it is not there); empty =
     /// nowhere. Saves little: preparing is fast.
     std::filesystem::path stored_setup;
