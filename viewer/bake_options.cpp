@@ -179,6 +179,10 @@ void complete_outputs(BakeOptions& o) {
         const std::string ending = lower_ending(o.output);
         if (ending != ".exr" && ending != ".ktx2" && ending != ".dds")
             refuse("-o", "the maps can't be '" + o.output + "'; give one of .exr, .ktx2, .dds");
+        const fs::path frames(o.surroundings.environment), maps = fs::absolute(o.output).parent_path();
+        if (fs::is_directory(frames) && fs::weakly_canonical(frames) == fs::weakly_canonical(maps))
+            refuse("-o",
+                   "the maps would lie among the frames, and the next run take them for frames; give another folder");
     } else {
         if (numbered)
             refuse("-o", "'" + o.output + "' has a place for frames' numbers, but '" + o.surroundings.environment +

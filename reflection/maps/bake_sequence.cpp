@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cctype>
+#include <set>
 
 namespace kokage {
 
@@ -58,6 +59,16 @@ class SequenceBake {
     SequenceBake(const SequenceSettings& settings, BakedMap& map, WorkReport& report)
         : settings_(settings), map_(map), report_(report) {}
 
+    /// A frame of an earlier run tells the size that all have.
+    void note_size(const SequenceImage& kept) {
+        if (width_ == 0) {
+            WorkReport ignored;
+            const Environment environment = load(kept, ignored);
+            width_ = environment.remainder.width;
+            height_ = environment.remainder.height;
+        }
+    }
+
     /// Throws InputError if the image is broken.
     Environment load(const SequenceImage& image, WorkReport& of_frame) const {
         EnvironmentLoading loading = settings_.loading;
@@ -75,9 +86,10 @@ class SequenceBake {
     }
 
     void bake(const Environment& environment, const fs::path& output, WorkReport& of_frame, Progress& progress) {
-        if (width_ == 0) {
-            width_ = environment.remainder.width;
-            height_ = environment.remainder.height;
+        width_ = environment.remainder.width;
+        height_ = environment.remainder.height;
+        if (!prepared_) {
+            prepared_ = true;
             if (map_.layout().size() > 0)
                 baker_ = make_baker(map_.layout(), width_, height_, settings_.baker, report_, progress);
         }
@@ -94,7 +106,24 @@ class SequenceBake {
     WorkReport& report_;
     std::unique_ptr<Baker> baker_;
     int width_ = 0, height_ = 0;
+    bool prepared_ = false;
 };
+
+/// Maps, journal and set-up must not lie where the images do.
+void check_images_survive(const std::vector<SequenceImage>& images, const SequenceSettings& settings) {
+    std::set<fs::path> inputs;
+    for (const SequenceImage& image : images)
+        inputs.insert(fs::weakly_canonical(image.file));
+    const auto check = [&](const fs::path& written) {
+        if (!written.empty() && inputs.contains(fs::weakly_canonical(written)))
+            throw InputError("'" + written.string() +
+                             "' is one of the images and would be written over; write to another folder");
+    };
+    for (const SequenceImage& image : images)
+        check(numbered_name(settings.output, image.number));
+    check(journal_of(settings.output));
+    check(settings.baker.stored_setup);
+}
 
 void make_folder_of(const std::string& output) {
     const fs::path folder = fs::path(output).parent_path();
@@ -119,6 +148,7 @@ fs::path journal_of(const std::string& output_pattern) {
 
 SequenceResult bake_sequence(const std::vector<SequenceImage>& images, const SequenceSettings& settings, BakedMap& map,
                              WorkReport& report, Progress& progress) {
+    check_images_survive(images, settings);
     make_folder_of(settings.output);
     SequenceJournal journal(journal_of(settings.output), settings.identity);
     SequenceBake sequence(settings, map, report);
@@ -130,6 +160,7 @@ SequenceResult bake_sequence(const std::vector<SequenceImage>& images, const Seq
         progress.throw_if_stopped();
         const fs::path output = numbered_name(settings.output, image.number);
         if (journal.has(image.number, image.file, output)) {
+            sequence.note_size(image);
             ++result.kept;
             progress.advance(1);
             continue;

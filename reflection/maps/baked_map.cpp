@@ -117,12 +117,16 @@ class Voxels final : public BakedMap {
     std::vector<std::size_t> used_texels(const MapSettings& settings) const {
         const SmoothnessRange range = settings.smoothness.value_or(SmoothnessRange{0, 2});
         const double n = cube_.size(), s = n - 2, diagonal = std::sqrt(3.0) * 2 / s;
+        const auto looked_up_at = [&](double smoothness) {
+            return std::hypot(smoothness, 2 * VoxelCube::centre_radius / s);
+        };
+        const double least = looked_up_at(range.roughest) - diagonal, most = looked_up_at(range.smoothest) + diagonal;
         std::vector<std::size_t> used;
         for (std::size_t texel = 0; texel < cube_.layout().size(); ++texel) {
             const std::size_t voxel = cube_.voxel_of_texel()[texel], width = std::size_t(cube_.size());
             const glm::dvec3 place(double(voxel % width), double(voxel / width % width), double(voxel / width / width));
             const double smoothness = glm::length((place - (n - 1) / 2) * 2.0 / s);
-            if (smoothness >= range.roughest - diagonal && smoothness <= range.smoothest + diagonal)
+            if (smoothness >= least && smoothness <= most)
                 used.push_back(texel);
         }
         return used;

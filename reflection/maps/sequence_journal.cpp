@@ -64,7 +64,8 @@ void SequenceJournal::read(const std::string& identity) {
     for (std::string line; std::getline(stream, line) && !stream.eof(); first = false) {
         const Json json = Json::parse(line, nullptr, false);
         if (first) {
-            if (!json.is_object() || json.value("kokage_frames", Json()) != 1 || !json.contains("settings"))
+            if (!json.is_object() || json.value("kokage_frames", Json()) != 1 || !json.contains("settings") ||
+                !json["settings"].is_object())
                 throw InputError(name + "is no journal of baked frames" + remedy);
             const Json asked = Json::parse(identity), &before = json["settings"];
             for (const auto& [key, value] : asked.items())

@@ -112,6 +112,30 @@ TEST(BakeSequence, AChangedImageOrALostMapIsBakedAgain) {
     EXPECT_EQ(result.kept, 6u);
 }
 
+TEST(BakeSequence, AnotherRunKeepsTheSizeOfTheFirstFrame) {
+    Frames frames;
+    write_frame(frames.folder / "in_02.exr", 64, 0.5f); // another size: left out
+    EXPECT_EQ(frames.run().broken, 1u);
+    fs::remove(frames.map_file(4));
+    const SequenceResult result = frames.run();
+    EXPECT_EQ(result.kept, 6u);
+    EXPECT_EQ(result.baked, 1u);
+    ASSERT_EQ(result.first_broken.size(), 1u);
+    EXPECT_EQ(result.first_broken.front().number, 2u);
+}
+
+TEST(BakeSequence, ImagesAreNeverWrittenOver) {
+    Frames frames;
+    const auto bytes = fs::file_size(frames.folder / "in_03.exr");
+    frames.settings.output = (frames.folder / "maps" / ".." / "in_%02d.exr").string();
+    fs::create_directory(frames.folder / "maps");
+    EXPECT_THROW(frames.run(), InputError);
+    frames.settings.output = (frames.folder / "maps" / "m%03d.exr").string();
+    frames.settings.baker.stored_setup = frames.folder / "in_03.exr";
+    EXPECT_THROW(frames.run(), InputError);
+    EXPECT_EQ(fs::file_size(frames.folder / "in_03.exr"), bytes);
+}
+
 TEST(BakeSequence, AJournalThatWasCutOffGoesOnFromItsLastWholeLine) {
     const Frames frames;
     frames.run();
@@ -120,8 +144,10 @@ TEST(BakeSequence, AJournalThatWasCutOffGoesOnFromItsLastWholeLine) {
     fs::resize_file(journal, fs::file_size(journal) - 5);
     EXPECT_EQ(frames.run().baked, 1u);
     EXPECT_EQ(frames.run().baked, 0u) << "the line that was cut off is whole again";
-    std::ofstream(journal) << "no journal\n";
-    EXPECT_THROW(frames.run(), InputError);
+    for (const char* other : {"no journal\n", "{\"kokage_frames\":1,\"settings\":5}\n"}) {
+        std::ofstream(journal) << other;
+        EXPECT_THROW(frames.run(), InputError) << other;
+    }
 }
 
 TEST(BakeSequence, BrokenFramesAreNamedAndLeftOutOrStopTheRun) {
