@@ -213,6 +213,9 @@ Command compare_command(CLI::App& program) {
                     check_output(options->report, "the report", {".json"});
                 check_distinct({options->picture, options->error_map, options->report});
                 check_distinct({options->reference, options->error_map, options->report});
+                for (const std::filesystem::path& file : {options->picture, options->reference})
+                    if (!std::filesystem::exists(file))
+                        throw InputError("there is no file '" + file.string() + "'");
                 const bool tree = is_tree(options->picture), map = !tree && is_reflection_map(options->picture);
                 if (tree != is_tree(options->reference) || map != is_reflection_map(options->reference))
                     throw InputError("'" + options->picture.string() + "' and '" + options->reference.string() +

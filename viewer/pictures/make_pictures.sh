@@ -1,10 +1,10 @@
 #!/bin/bash
-# Makes the pictures of README.md: viewer/pictures/oak.jpg, viewer/pictures/species.jpg and viewer/pictures/contact_sheet.jpg.
+# Makes the pictures of README.md in viewer/pictures: oak.jpg, species.jpg, teapot.jpg and contact_sheet.jpg.
 #
 #   viewer/pictures/make_pictures.sh [PROGRAM]
 #
 # PROGRAM: the built program, otherwise .build/release/kokage. Needs oiiotool (Debian: openimageio-tools).
-# KOKAGE_DATA: folder with trees/ and env/. Without it, or where a file is missing, the pictures that need it are left out, and named.
+# KOKAGE_DATA: folder with trees/, env/ and objects/. Without it, or where a file is missing, the pictures that need it are left out, and named.
 # What oiiotool was called with, paths and all, is kept out of the pictures.
 # SIZE (of one picture of the sheet, otherwise 384x288) and SAMPLES (otherwise 24) may be set for a quick look.
 set -euo pipefail
@@ -41,6 +41,15 @@ for tile in {oak,beech,birch,maple,willow,aspen,pine,spruce,cypress,cherry}:summ
     echo "made: $tile"
 done
 oiiotool --nosoftwareattrib "${sheet[@]}" --mosaic:pad=4 5x4 --compression jpeg:85 -o "$here/species.jpg"
+
+# The sum over every pixel of the surroundings; the same through a reflection map; how far apart they are; the same without the horizon's correction.
+teapot=$work/teapot/teapot-forest_slope-hdr-mixed.png
+"$program" --quiet bench reflection --experiment teapot -o "$work/teapot"
+if [ -f "$teapot" ]; then
+    oiiotool --nosoftwareattrib "$teapot" --compression jpeg:90 -o "$here/teapot.jpg"
+else
+    echo "skipped: the teapot (needs env/forest_slope.hdr and objects/utah_teapot.obj in KOKAGE_DATA)"
+fi
 
 tiles=() rows=0 columns=0
 for environment in "${environments[@]}"; do
