@@ -110,8 +110,9 @@ TEST(Compare, WhatCannotBeComparedIsSaidInOneLine) {
         const ProgramRun run = run_kokage(words, folder.path());
         EXPECT_EQ(run.status, 2) << words.back();
         EXPECT_TRUE(is_one_complaint(run.errors)) << words.back();
-        if (words.back() == "missing.png")
+        if (words.back() == "missing.png") {
             EXPECT_NE(run.errors.find("there is no file 'missing.png'"), std::string::npos) << run.errors;
+        }
     }
     EXPECT_EQ(folder.files(), std::vector<std::string>({"a picture.png", "broken.png", "small.png"}));
 }
