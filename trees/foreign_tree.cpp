@@ -284,15 +284,22 @@ class ForeignTreeBuilder {
     }
 
     /// Bark patches: about as long as the wood is thick around, but no smaller than a quarter of a leaf across, and
-    /// turning by at most 45 degrees, except on twigs, which a ring fits.
+    /// turning by at most 45 degrees; on twigs that are no thicker around than a leaf is across, rings as large as a
+    /// leaf.
     void cut_bark() {
         const NearestAxis nearest_axis(tree_.skeleton);
-        const float least = std::max(0.005f * crown_, 0.25f * mean_leaf_radius(tree_));
+        const float leaf = mean_leaf_radius(tree_), least = std::max(0.005f * crown_, 0.25f * leaf);
         SurfacePatchLimits limits;
         limits.max_turn = 0.7854f;
         limits.keep_cards = false;
+        const auto is_twig = [&](const AxisPlace& axis) {
+            return axis.found && axis.distance <= 2 * axis.radius_m && kPi * axis.radius_m <= leaf;
+        };
+        limits.whole_rings = [&](const glm::vec3& place) { return is_twig(nearest_axis.at(place)); };
         limits.max_radius = [&](const glm::vec3& place) {
             const AxisPlace nearest = nearest_axis.at(place);
+            if (is_twig(nearest))
+                return std::max(leaf, least);
             // A quarter of the circumference wide and as long as the circumference: an area of (2 pi r)^2 / 4.
             const float around =
                 2 * kPi * (nearest.found ? std::max(nearest.radius_m, 0.2f * nearest.distance) : crown_);

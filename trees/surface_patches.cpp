@@ -46,6 +46,7 @@ std::vector<std::uint32_t> surface_patches(std::span<const glm::vec3> positions,
         if (patch[seed] != ~0u)
             continue;
         const bool card = limits.keep_cards && component_size[component[seed]] <= 2;
+        const bool whole_ring = limits.whole_rings && limits.whole_rings(glm::vec3(facets[seed].centroid));
         const double radius = double(limits.max_radius(glm::vec3(facets[seed].centroid)));
         const double area_limit = kPiDouble * radius * radius;
         glm::dvec3 normal_sum = facets[seed].normal * facets[seed].area;
@@ -60,8 +61,8 @@ std::vector<std::uint32_t> surface_patches(std::span<const glm::vec3> positions,
                 if (patch[other] != ~0u)
                     continue;
                 const double length = glm::length(normal_sum);
-                const bool turns =
-                    facet.area > 0 && length > 0 && glm::dot(facet.normal, normal_sum) < cosine_limit * length;
+                const bool turns = !whole_ring && facet.area > 0 && length > 0 &&
+                                   glm::dot(facet.normal, normal_sum) < cosine_limit * length;
                 const bool grows =
                     area + facet.area > area_limit || glm::distance(facet.centroid, facets[seed].centroid) > 2 * radius;
                 if (turns || (grows && !card && facet.area > 0))

@@ -12,6 +12,8 @@ struct SurfacePatchLimits {
     float max_turn = 0.5236f; ///< radians between a triangle's normal and its patch's mean normal
     /// Largest radius of a patch (of the disc of its area) around a triangle centroid, in metres.
     std::function<float(const glm::vec3&)> max_radius;
+    /// Where a patch may turn all around; empty: nowhere.
+    std::function<bool(const glm::vec3&)> whole_rings;
     /// A connected piece of at most two triangles is a leaf card and never cut: its texture holds the leaf.
     bool keep_cards = true;
 };
