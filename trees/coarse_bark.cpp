@@ -2,6 +2,8 @@
 
 #include "common/geometry/point_tree.h"
 #include "common/geometry/triangle_topology.h"
+#include "common/services/random.h"
+#include "trees/keep_bark_area.h"
 
 #include <algorithm>
 #include <cmath>
@@ -52,26 +54,34 @@ struct Kept {
     std::vector<std::uint32_t> whole, reduced;
 };
 
-/// Of all parts together: whole pieces, the thickest, until they have `most_whole` triangles; further pieces until
-/// there are `most` in all.
-std::vector<Kept> choose_thick(const std::vector<Piece>& pieces, std::size_t parts, std::size_t most_whole,
-                               std::size_t most) {
+/// Of all parts together: whole pieces, the thickest, until they have `most_whole` triangles; further pieces, the
+/// thickest or `at_random`, until there are `most` in all.
+std::vector<Kept> choose_pieces(const std::vector<Piece>& pieces, std::size_t parts, std::size_t most_whole,
+                                std::size_t most, bool at_random) {
     std::vector<std::size_t> order(pieces.size());
     std::iota(order.begin(), order.end(), std::size_t(0));
     std::stable_sort(order.begin(), order.end(),
                      [&](std::size_t a, std::size_t b) { return pieces[a].thickness() > pieces[b].thickness(); });
+    std::size_t taken = 0, whole = 0;
+    while (whole < order.size() && taken + pieces[order[whole]].triangles.size() <= most_whole)
+        taken += pieces[order[whole++]].triangles.size();
+    if (at_random) {
+        // The same throw for every level: a coarser one has no twig that a finer one lacks, but for those kept whole.
+        std::vector<double> lot(pieces.size());
+        for (std::size_t i = 0; i < lot.size(); ++i)
+            lot[i] = Random(0x7716u, i).uniform();
+        std::stable_sort(order.begin() + std::ptrdiff_t(whole), order.end(),
+                         [&](std::size_t a, std::size_t b) { return lot[a] < lot[b]; });
+    }
     std::vector<Kept> kept(parts);
-    std::size_t taken = 0;
-    bool all_whole = true;
-    for (const std::size_t i : order) {
-        const std::size_t more = pieces[i].triangles.size();
-        if (taken > 0 && taken + more > most)
+    taken = 0;
+    for (std::size_t k = 0; k < order.size(); ++k) {
+        const Piece& piece = pieces[order[k]];
+        if (k >= whole && taken > 0 && taken + piece.triangles.size() > most)
             break;
-        taken += more;
-        all_whole = all_whole && taken <= most_whole;
-        Kept& own = kept[pieces[i].part];
-        std::vector<std::uint32_t>& where = all_whole ? own.whole : own.reduced;
-        where.insert(where.end(), pieces[i].triangles.begin(), pieces[i].triangles.end());
+        taken += piece.triangles.size();
+        std::vector<std::uint32_t>& where = k < whole ? kept[piece.part].whole : kept[piece.part].reduced;
+        where.insert(where.end(), piece.triangles.begin(), piece.triangles.end());
     }
     for (Kept& own : kept) {
         std::sort(own.whole.begin(), own.whole.end());
@@ -116,10 +126,11 @@ std::map<std::uint32_t, glm::vec3> patch_centres(const TreePart& part, const std
     return centres;
 }
 
-/// A part of the triangles, sorted by patch; `patch_of` names each one's coarse patch.
-TreePart assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles,
-                  const std::vector<std::uint32_t>& patch_of) {
-    TreePart part;
+/// A part of the triangles, sorted by patch; `patch_of` names each one's coarse patch. The first `growing` may grow.
+GrowingBark assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles,
+                     const std::vector<std::uint32_t>& patch_of, std::size_t growing) {
+    GrowingBark bark;
+    TreePart& part = bark.part;
     part.kind = TreePartKind::bark;
     part.material = fine.material;
     std::vector<std::uint32_t> order(triangles.size());
@@ -142,15 +153,18 @@ TreePart assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles
         }
         part.triangles.push_back(corners);
         part.triangle_patch.push_back(patch_of[t]);
+        bark.may_grow.push_back(t < growing ? 1 : 0);
     }
-    return part;
+    return bark;
 }
 
-/// One part with what stays of it; `target`: how many triangles are to be left of those to be simplified.
-CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t target) {
+/// One part with what stays of it, its triangles in `bark`; `target`: how many are to be left of those to be
+/// simplified.
+CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t target, GrowingBark& bark) {
     CoarseBark result;
     // Straight thick wood would lose all its rings, and with them the course of light along it: it stays as it is.
     std::vector<glm::uvec3> triangles = simplified(fine, chosen.reduced, target);
+    const std::size_t growing = triangles.size();
     for (const std::uint32_t t : chosen.whole)
         triangles.push_back(fine.triangles[t]);
     std::vector<std::uint32_t> kept = chosen.whole;
@@ -194,13 +208,13 @@ CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t tar
                                                   ? ~0u
                                                   : nearest.nearest(centre->second).index);
     }
-    result.part = assemble(fine, triangles, patch_of);
+    bark = assemble(fine, triangles, patch_of, growing);
     return result;
 }
 
 } // namespace
 
-std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, double share) {
+std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, double share, bool bare) {
     std::vector<Piece> pieces;
     std::size_t count = 0;
     for (std::size_t p = 0; p < fine.size(); ++p) {
@@ -208,7 +222,7 @@ std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, do
         count += fine[p]->triangles.size();
     }
     const std::size_t target = std::max<std::size_t>(16, std::size_t(std::lround(double(count) * share)));
-    const std::vector<Kept> kept = choose_thick(pieces, fine.size(), target / 2, 2 * target);
+    const std::vector<Kept> kept = choose_pieces(pieces, fine.size(), target / 2, 2 * target, bare);
     std::size_t whole = 0, reduced = 0;
     for (const Kept& own : kept) {
         whole += own.whole.size();
@@ -216,9 +230,18 @@ std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, do
     }
     const double left = reduced ? std::min(1.0, double(target - std::min(target, whole)) / double(reduced)) : 0;
     std::vector<CoarseBark> result;
+    std::vector<GrowingBark> bark(fine.size());
     for (std::size_t p = 0; p < fine.size(); ++p)
         result.push_back(
-            coarse_part(*fine[p], kept[p], std::size_t(std::lround(left * double(kept[p].reduced.size())))));
+            coarse_part(*fine[p], kept[p], std::size_t(std::lround(left * double(kept[p].reduced.size()))), bark[p]));
+    double area = 0, thickest = 0;
+    for (const Piece& piece : pieces) {
+        area += piece.area;
+        thickest = std::max(thickest, piece.thickness());
+    }
+    keep_bark_area(bark, area, 4 * thickest);
+    for (std::size_t p = 0; p < fine.size(); ++p)
+        result[p].part = std::move(bark[p].part);
     return result;
 }
 

@@ -15,8 +15,8 @@ struct CoarseBark {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> stands_for;
 };
 
-/// About `share` of the triangles of all parts together, in the same parts: see level_of_detail(). Never fewer than
-/// what the thickest piece needs; parts may become empty.
-std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, double share);
+/// About `share` of the triangles of all parts together, in the same parts, with the area of all: see
+/// level_of_detail(). Never fewer than what the thickest piece needs; parts may become empty.
+std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, double share, bool bare);
 
 } // namespace kokage

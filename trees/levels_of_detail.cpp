@@ -174,7 +174,7 @@ void add_bark(const Tree& full, int level, LevelOfDetail& result) {
             fine.push_back(&full.parts[p]);
             place.push_back(p);
         }
-    std::vector<CoarseBark> all = coarse_bark(fine, share);
+    std::vector<CoarseBark> all = coarse_bark(fine, share, leaves == 0);
     for (std::size_t i = 0; i < all.size(); ++i) {
         CoarseBark& coarse = all[i];
         for (std::uint32_t& patch : coarse.part.triangle_patch)

@@ -28,11 +28,13 @@ inline constexpr int detail_ratio = 3;
 /// within a part). Each group becomes its member nearest to the group's centroid, moved there and scaled about its own
 /// centre so that its area is the group's: total leaf area is kept (to rounding), its distribution in space to the
 /// groups' size, that of inclinations on average. Texture coordinates stay.
-/// Bark: connected pieces are left out, thinnest first, until twice the level's triangles are left. The thickest, up to
-/// half of the level's triangles, stay as they are; the others are simplified by edge collapses (meshoptimizer) that
-/// keep texture seams. Vertices keep place, normal and texture
-/// coordinate; patches keep their triangles or are taken over by the nearest one of the same part.
-/// Throws InputError for another level, or if the tree's indices contradict one another.
+/// Bark: connected pieces are left out until twice the level's triangles are left. The thickest, up to half of the
+/// level's triangles, stay as they are. Of the others, trees in leaf keep the thickest, as limbs show between leaves;
+/// bare trees keep some at random, as most of what is seen of them is twigs. These are simplified by edge collapses
+/// (meshoptimizer) that keep texture seams, and grow in thickness until bark has the full tree's area, where it can be
+/// so (keep_bark_area.h). Vertices keep normal and texture coordinate; patches keep their triangles or are taken over
+/// by the nearest one of the same part. Throws InputError for another level, or if the tree's indices contradict one
+/// another.
 LevelOfDetail level_of_detail(const Tree& full, int level);
 
 /// The level's light: each leaf side (and bark patch) has the area-weighted mean radiance of those sides that it stands

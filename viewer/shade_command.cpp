@@ -131,6 +131,18 @@ void print_file(const std::filesystem::path& file) {
                 bytes_text(double(std::filesystem::file_size(file))).c_str());
 }
 
+/// The errors of the levels of detail, as in their report, and where they are.
+void print_lods(const WrittenLods& lods) {
+    if (!lods.levels.empty())
+        std::printf("levels of detail: mean relative error of the picture's pixels, as large as drawn and from afar\n");
+    for (const LodFigures& level : lods.levels)
+        std::printf("  %-24s %8zu leaves %9zu triangles  %6.1f %%  %6.1f %% from %d times as far\n", level.file.c_str(),
+                    level.leaves, level.triangles, 100 * level.image_mre, 100 * level.image_mre_from_afar,
+                    level.times_as_far);
+    for (const std::filesystem::path& file : lods.files)
+        print_file(file);
+}
+
 void print_summary(const ShadeOptions& options, const Shading& s, const StageClock& clock) {
     std::printf("%s: %s, %s%s; %s\n", shown_name(s.tree.name).c_str(),
                 counted(s.tree.leaves.size(), "leaf", "leaves").c_str(),
@@ -182,7 +194,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     shade(options, shading, clock, *context.progress);
 
     const WritingFiles writing;
-    std::vector<std::filesystem::path> lods;
+    WrittenLods lods;
     if (!options.lods.empty())
         clock.run("levels", [&] {
             lods = write_lods({shading.tree, shading.patches, shading.origins, shading.solution, shading.environment},
@@ -213,7 +225,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
     for (const auto& [what, file] : outputs)
         if (!file->empty())
             record.outputs.emplace_back(what, file->string());
-    for (const std::filesystem::path& file : lods)
+    for (const std::filesystem::path& file : lods.files)
         record.outputs.emplace_back("level of detail", file.string());
     if (!options.report.empty())
         write_json(options.report, shading_report(record));
@@ -225,8 +237,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         for (const std::string& warning : *warnings)
             std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
     print_summary(options, shading, clock);
-    for (const std::filesystem::path& file : lods)
-        print_file(file);
+    print_lods(lods);
 }
 
 } // namespace

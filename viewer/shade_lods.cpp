@@ -156,7 +156,7 @@ class LodWriter {
         height_ = options.picture_height;
     }
 
-    std::vector<fs::path> write() {
+    WrittenLods write() {
         std::error_code ignored;
         fs::create_directories(options_.folder, ignored);
         progress_.begin("levels of detail", std::size_t(options_.levels) + 2);
@@ -175,7 +175,7 @@ class LodWriter {
                                             "/ max(ref, 0.05 mean ref), at full size"},
                               {"image_mre_from_afar", "the same from `times_as_far`, for which the level is meant"}}}});
         files_.push_back(report);
-        return files_;
+        return {files_, figures_};
     }
 
   private:
@@ -211,6 +211,12 @@ class LodWriter {
         row["image_mre"] = near;
         row["times_as_far"] = 1 << halvings;
         row["image_mre_from_afar"] = afar;
+        figures_.push_back({.file = row["file"],
+                            .leaves = row["leaves"],
+                            .triangles = row["triangles"],
+                            .image_mre = near,
+                            .times_as_far = 1 << halvings,
+                            .image_mre_from_afar = afar});
         levels_.push_back(std::move(row));
         views_.push_back(std::move(views));
         progress_.advance(1);
@@ -300,6 +306,7 @@ class LodWriter {
     ShadedAttributes light_;
     std::optional<Impostor> impostor_;
     nlohmann::ordered_json levels_ = nlohmann::ordered_json::array();
+    std::vector<LodFigures> figures_;
     std::vector<std::vector<Seen>> views_; ///< per level, per side
     std::vector<fs::path> files_;
 };
@@ -317,7 +324,7 @@ void check_lod_folder(const fs::path& folder) {
                          "written");
 }
 
-std::vector<fs::path> write_lods(const ShadedTree& shaded, const LodOptions& options, Progress& progress) {
+WrittenLods write_lods(const ShadedTree& shaded, const LodOptions& options, Progress& progress) {
     return LodWriter(shaded, options, progress).write();
 }
 

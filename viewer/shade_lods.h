@@ -33,11 +33,25 @@ struct LodOptions {
 /// Throws InputError, before any work, if the folder is a file or can't be made or written.
 void check_lod_folder(const std::filesystem::path& folder);
 
-/// Writes STEM_lod0.glb (the full tree) to STEM_lod3.glb, STEM_impostor.glb, STEM_lods.png and STEM_lods.json; gives
-/// back their paths. The picture has a column for each, full tree first: as it looks from a side that no card faces;
-/// its error against the full tree (dark 0, pale yellow 1, as error_legend); and as it looks from 1, 2, 4 ... times as
-/// far, for which it is meant. The figures: leaves, triangles, leaf area, mean radiance, and the mean relative error of
-/// the picture's pixels, from two sides, at full size and from as far as it is meant for.
-std::vector<std::filesystem::path> write_lods(const ShadedTree& shaded, const LodOptions& options, Progress& progress);
+/// One of the full tree, its coarser meshes and its impostor, against the full tree.
+struct LodFigures {
+    std::string file; ///< its name in the folder
+    std::size_t leaves = 0, triangles = 0;
+    double image_mre = 0; ///< mean relative error of the picture's pixels, at full size
+    int times_as_far = 1;
+    double image_mre_from_afar = 0; ///< the same from so many times as far, for which it is meant
+};
+
+struct WrittenLods {
+    std::vector<std::filesystem::path> files;
+    std::vector<LodFigures> levels; ///< as the picture's columns
+};
+
+/// Writes STEM_lod0.glb (the full tree) to STEM_lod3.glb, STEM_impostor.glb, STEM_lods.png and STEM_lods.json. The
+/// picture has a column for each, full tree first: as it looks from a side that no card faces; its error against the
+/// full tree (dark 0, pale yellow 1, as error_legend); and as it looks from 1, 2, 4 ... times as far, for which it is
+/// meant. The figures: leaves, triangles, leaf area, mean radiance, and the mean relative error of the picture's
+/// pixels, from two sides, at full size and from as far as it is meant for.
+WrittenLods write_lods(const ShadedTree& shaded, const LodOptions& options, Progress& progress);
 
 } // namespace kokage

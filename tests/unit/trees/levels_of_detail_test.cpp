@@ -107,6 +107,40 @@ TEST(LevelsOfDetail, KeepTheLeavesDistributionInSpace) {
     }
 }
 
+// What is seen of a bare tree is its bark's area: without growth a birch's levels have 59, 41 and 28 % of it.
+TEST(LevelsOfDetail, KeepBarkAreaInSummerAndWinter) {
+    const auto reach = [](const Tree& tree) {
+        double furthest = 0;
+        for (const TreePart& part : tree.parts)
+            for (const glm::vec3& p : part.positions)
+                furthest = std::max(furthest, double(std::hypot(p.x, p.z)));
+        return furthest;
+    };
+    for (const char* species : {"oak", "spruce", "birch"})
+        for (const Season season : {Season::summer, Season::winter}) {
+            GrowthParameters p = find_species(species).parameters;
+            p.leaves = 3000;
+            p.season = season;
+            const Tree full = grow(p);
+            const double area = level_of_detail(full, 0).bark_area;
+            for (int level = 1; level <= 3; ++level) {
+                const LevelOfDetail lod = level_of_detail(full, level);
+                // The slow twin: triangle by triangle, from the positions that are written.
+                double sum = 0;
+                for (const TreePart& part : lod.tree.parts)
+                    if (part.kind == TreePartKind::bark)
+                        for (const glm::uvec3& t : part.triangles)
+                            sum += 0.5 * glm::length(glm::cross(
+                                             glm::dvec3(part.positions[t.y]) - glm::dvec3(part.positions[t.x]),
+                                             glm::dvec3(part.positions[t.z]) - glm::dvec3(part.positions[t.x])));
+                EXPECT_NEAR(sum, area, 0.1 * area) << species << ", level " << level;
+                EXPECT_NEAR(lod.bark_area, area, 0.1 * area) << species << ", level " << level;
+                EXPECT_TRUE(is_sound(lod.tree));
+                EXPECT_NEAR(reach(lod.tree), reach(full), 0.25 * reach(full)) << species << ", level " << level;
+            }
+        }
+}
+
 TEST(LevelsOfDetail, EveryLeafIsStoodForByOneNearIt) {
     const Tree full = grown("oak");
     const LevelOfDetail lod = level_of_detail(full, 2);

@@ -107,6 +107,18 @@ TEST(Shade, WritesLevelsOfDetailWithTheirErrors) {
     const Json levels = Json::parse(read_text(folder / "levels" / "oak_lods.json")).at("levels");
     ASSERT_EQ(levels.size(), 5u);
     EXPECT_EQ(levels[0]["image_mre"], 0.0) << "the full tree is the reference";
+    for (const Json& row : levels) { // every error is on the terminal too
+        const std::size_t line = run.output.find("  " + row["file"].get<std::string>());
+        ASSERT_NE(line, std::string::npos) << run.output;
+        const std::string text = run.output.substr(line, run.output.find('\n', line) - line);
+        EXPECT_NE(text.find(" " + std::to_string(row["triangles"].get<int>()) + " triangles"), std::string::npos)
+            << text;
+        for (const char* error : {"image_mre", "image_mre_from_afar"}) {
+            char percent[32];
+            std::snprintf(percent, sizeof percent, "%.1f %%", 100 * row[error].get<double>());
+            EXPECT_NE(text.find(percent), std::string::npos) << text;
+        }
+    }
     for (int level = 1; level <= 3; ++level) {
         const Json& row = levels[std::size_t(level)];
         EXPECT_NEAR(row["leaf_area_m2"].get<double>() / levels[0]["leaf_area_m2"].get<double>(), 1, 0.01);
