@@ -126,9 +126,11 @@ std::map<std::uint32_t, glm::vec3> patch_centres(const TreePart& part, const std
     return centres;
 }
 
-/// A part of the triangles, sorted by patch; `patch_of` names each one's coarse patch. The first `growing` may grow.
+/// A part of the triangles, sorted by patch; `patch_of` names each one's coarse patch. The first `growing` may grow
+/// where their vertices are `thin`.
 GrowingBark assemble(const TreePart& fine, const std::vector<glm::uvec3>& triangles,
-                     const std::vector<std::uint32_t>& patch_of, std::size_t growing) {
+                     const std::vector<std::uint32_t>& patch_of, std::size_t growing,
+                     const std::vector<std::uint8_t>& thin) {
     GrowingBark bark;
     TreePart& part = bark.part;
     part.kind = TreePartKind::bark;
@@ -153,14 +155,15 @@ GrowingBark assemble(const TreePart& fine, const std::vector<glm::uvec3>& triang
         }
         part.triangles.push_back(corners);
         part.triangle_patch.push_back(patch_of[t]);
-        bark.may_grow.push_back(t < growing ? 1 : 0);
+        bark.may_grow.push_back(t < growing ? thin[triangles[t].x] : std::uint8_t(0));
     }
     return bark;
 }
 
 /// One part with what stays of it, its triangles in `bark`; `target`: how many are to be left of those to be
 /// simplified.
-CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t target, GrowingBark& bark) {
+CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t target,
+                       const std::vector<std::uint8_t>& thin, GrowingBark& bark) {
     CoarseBark result;
     // Straight thick wood would lose all its rings, and with them the course of light along it: it stays as it is.
     std::vector<glm::uvec3> triangles = simplified(fine, chosen.reduced, target);
@@ -208,7 +211,7 @@ CoarseBark coarse_part(const TreePart& fine, const Kept& chosen, std::size_t tar
                                                   ? ~0u
                                                   : nearest.nearest(centre->second).index);
     }
-    bark = assemble(fine, triangles, patch_of, growing);
+    bark = assemble(fine, triangles, patch_of, growing, thin);
     return result;
 }
 
@@ -229,16 +232,25 @@ std::vector<CoarseBark> coarse_bark(const std::vector<const TreePart*>& fine, do
         reduced += own.reduced.size();
     }
     const double left = reduced ? std::min(1.0, double(target - std::min(target, whole)) / double(reduced)) : 0;
-    std::vector<CoarseBark> result;
-    std::vector<GrowingBark> bark(fine.size());
-    for (std::size_t p = 0; p < fine.size(); ++p)
-        result.push_back(
-            coarse_part(*fine[p], kept[p], std::size_t(std::lround(left * double(kept[p].reduced.size()))), bark[p]));
     double area = 0, thickest = 0;
     for (const Piece& piece : pieces) {
         area += piece.area;
         thickest = std::max(thickest, piece.thickness());
     }
+    // A trunk twice as thick would be seen: wood may grow that is thinner than half of the thickest.
+    std::vector<std::vector<std::uint8_t>> thin(fine.size());
+    for (std::size_t p = 0; p < fine.size(); ++p)
+        thin[p].assign(fine[p]->positions.size(), 0);
+    for (const Piece& piece : pieces)
+        if (2 * piece.thickness() < thickest)
+            for (const std::uint32_t t : piece.triangles)
+                for (int c = 0; c < 3; ++c)
+                    thin[piece.part][fine[piece.part]->triangles[t][c]] = 1;
+    std::vector<CoarseBark> result;
+    std::vector<GrowingBark> bark(fine.size());
+    for (std::size_t p = 0; p < fine.size(); ++p)
+        result.push_back(coarse_part(*fine[p], kept[p], std::size_t(std::lround(left * double(kept[p].reduced.size()))),
+                                     thin[p], bark[p]));
     keep_bark_area(bark, area, 4 * thickest);
     for (std::size_t p = 0; p < fine.size(); ++p)
         result[p].part = std::move(bark[p].part);

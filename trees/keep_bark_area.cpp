@@ -6,7 +6,7 @@ namespace kokage {
 namespace {
 
 /// Where every vertex of a part goes when the bark grows by 1 m; vertices of no growing triangle stay.
-std::vector<glm::dvec3> outward(const GrowingBark& bark, bool all) {
+std::vector<glm::dvec3> outward(const GrowingBark& bark) {
     const TreePart& part = bark.part;
     const std::vector<std::uint32_t> same = weld(part.positions);
     std::vector<glm::dvec3> normal(same.size(), glm::dvec3(0.0));
@@ -15,7 +15,7 @@ std::vector<glm::dvec3> outward(const GrowingBark& bark, bool all) {
         normal[same[v]] += glm::dvec3(part.normals[v]);
     for (std::size_t t = 0; t < part.triangles.size(); ++t)
         for (int c = 0; c < 3; ++c)
-            (all || bark.may_grow[t] ? grows : held)[same[part.triangles[t][c]]] = 1;
+            (bark.may_grow[t] ? grows : held)[same[part.triangles[t][c]]] = 1;
     std::vector<glm::dvec3> direction(same.size(), glm::dvec3(0.0));
     for (std::size_t v = 0; v < same.size(); ++v) {
         const std::uint32_t own = same[v];
@@ -48,15 +48,10 @@ double keep_bark_area(std::vector<GrowingBark>& parts, double area, double furth
             sum += area_when_moved(parts[p].part, directions[p], by);
         return sum;
     };
-    for (const bool all : {false, true}) {
-        directions.clear();
-        for (const GrowingBark& bark : parts)
-            directions.push_back(outward(bark, all));
-        if (area_at(0) >= area || !(furthest > 0))
-            return 0;
-        if (area_at(furthest) >= area)
-            break;
-    }
+    for (const GrowingBark& bark : parts)
+        directions.push_back(outward(bark));
+    if (area_at(0) >= area || !(furthest > 0))
+        return 0;
     double low = 0, high = furthest;
     if (area_at(high) > area)
         for (int i = 0; i < 40; ++i) {

@@ -18,9 +18,8 @@ struct GrowingBark {
 /// the mean shadow of a convex body is a quarter of it (Cauchy). Some elements at random, enlarged to the area of all,
 /// are stochastic simplification (Cook, Halstead, Planck and Ryu 2007, "Stochastic Simplification of Aggregate
 /// Detail"); they scale by a factor, here radii grow by a sum, so that twigs grow by more than boughs.
-/// Bark that has the area already stays as it is, as do vertices of triangles that may not grow, unless the others
-/// can't make up for all that is missing: then all grow. Nothing is moved further than `furthest` (m), so that the
-/// area may fall short. Gives back the length (m).
+/// Bark that has the area already stays as it is, as do vertices of triangles that may not grow. Nothing is moved
+/// further than `furthest` (m), so that the area may fall short. Gives back the length (m).
 double keep_bark_area(std::vector<GrowingBark>& parts, double area, double furthest);
 
 } // namespace kokage

@@ -119,7 +119,7 @@ TEST(LevelsOfDetail, KeepBarkAreaInSummerAndWinter) {
     for (const char* species : {"oak", "spruce", "birch"})
         for (const Season season : {Season::summer, Season::winter}) {
             GrowthParameters p = find_species(species).parameters;
-            p.leaves = 3000;
+            p.leaves = 15000;
             p.season = season;
             const Tree full = grow(p);
             const double area = level_of_detail(full, 0).bark_area;
