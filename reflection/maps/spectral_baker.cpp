@@ -83,7 +83,7 @@ class SpectralBaker final : public Baker {
     void add_lights(const Image& image, std::span<const ClusterOfLight> in_image, std::span<const DistantLight> others,
                     std::span<glm::vec3> filtered, WorkReport& report);
     void skip_bands(WorkReport& report) const;
-    void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report);
+    void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report, Progress& progress);
 
     Stopwatch watch_; ///< runs from the beginning of the set-up
     TexelLayout layout_;
@@ -270,19 +270,22 @@ void SpectralBaker::skip_bands(WorkReport& report) const {
                                 std::to_string(all - used) + " of " + std::to_string(all) + " coefficients filtered"});
 }
 
-void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report) {
+void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report,
+                                  Progress& progress) {
     if (direct_.empty())
         return;
     const Stopwatch watch;
     LatLongPlanes planes(width_, height_);
     planes.set_pixels(image);
     parallel_blocks(direct_.size(), 64, [&](std::size_t begin, std::size_t end) {
+        progress.throw_if_stopped();
         for (std::size_t i = begin; i < end; ++i) {
             const std::uint32_t texel = direct_[i];
             filtered[texel] =
                 glm::vec3(filtered_image(planes, {layout_.kind, double(layout_.parameters[texel])},
                                          glm::normalize(glm::dvec3(layout_.directions[texel])), kLeastShare));
         }
+        progress.advance(end - begin);
     });
     report.stages.push_back({"summing pixel by pixel", watch.cpu(), watch.wall()});
 }
@@ -325,7 +328,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
         throw InputError("baking: " + std::to_string(filtered.size()) + " places for " +
                          std::to_string(layout_.size()) + " texels");
     Stopwatch watch;
-    progress.begin("filtering", 1);
+    progress.begin("filtering", direct_.size() + 1);
     const Range range = range_of(image);
     report.counts.push_back({"texels", layout_.size()});
     std::vector<ClusterOfLight> lights;
@@ -347,7 +350,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
         report.counts.push_back({"pixels of lights", pixels});
         report.stages.push_back({"splitting lights off", watch.cpu(), watch.wall()});
         filter_smooth(split.remainder, range_of(split.remainder), filtered, report, progress);
-        filter_direct(image, filtered, report);
+        filter_direct(image, filtered, report, progress);
     }
     add_lights(image, lights, surroundings.distant_lights, filtered, report);
     for (glm::vec3& value : filtered)

@@ -10,6 +10,7 @@
 #include "reflection/maps/spectral_plan.h"
 #include "reflection/maps/spectral_read.h"
 
+#include <atomic>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -187,6 +188,21 @@ TEST(SpectralBaker, LobesTooNarrowForTheImageAreSummedPixelByPixel) {
     EXPECT_TRUE(plan.is_direct(2e4f));
     EXPECT_FALSE(plan.is_direct(20));
     EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 2e-4);
+}
+
+TEST(SpectralBaker, SumsPixelByPixelShowProgressAndCanBeStopped) {
+    struct StopsWithin : Progress {
+        std::atomic<std::size_t> left{100};
+        void advance(std::size_t steps) override { left -= std::min(left.load(), steps); }
+        bool stop_requested() const override { return left == 0; }
+    } progress;
+    const TexelLayout layout = scattered(LobeKind::phong, 2e4, 5e4, 1000);
+    Environment environment;
+    environment.remainder = noise(64, 32, 3);
+    std::vector<glm::vec3> filtered(layout.size());
+    WorkReport report;
+    const std::unique_ptr<Baker> baker = spectral_baker(layout, 64, 32, {}, report);
+    EXPECT_THROW(baker->bake(environment, filtered, report, progress), Stopped);
 }
 
 TEST(SpectralBaker, ImagesOfAnyShape) {
