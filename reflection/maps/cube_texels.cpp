@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <charconv>
 #include <cmath>
 #include <cstring>
@@ -89,21 +88,6 @@ void decode_texels(const unsigned char* from, TexelFormat format, std::span<glm:
         }
         from += file_texel_bytes(format);
     }
-}
-
-std::uint64_t checksum(std::span<const unsigned char> bytes, std::uint64_t start) {
-    std::uint64_t sum = start ^ 0x9e3779b97f4a7c15u;
-    const std::size_t words = bytes.size() / 8;
-    for (std::size_t i = 0; i < words; ++i) {
-        std::uint64_t word;
-        std::memcpy(&word, bytes.data() + 8 * i, 8);
-        sum = std::rotl(sum ^ word, 29) * 0xbf58476d1ce4e5b9u;
-    }
-    for (std::size_t i = 8 * words; i < bytes.size(); ++i)
-        sum = std::rotl(sum ^ bytes[i], 29) * 0xbf58476d1ce4e5b9u;
-    sum ^= bytes.size();
-    sum = (sum ^ sum >> 32) * 0x94d049bb133111ebu;
-    return sum ^ sum >> 29;
 }
 
 void check_finite(const PrefilteredCube& cube, const std::string& name) {

@@ -20,9 +20,6 @@ std::size_t encode_texels(std::span<const glm::vec3> texels, TexelFormat format,
 /// The other way; alpha is left out.
 void decode_texels(const unsigned char* from, TexelFormat format, std::span<glm::vec3> texels);
 
-/// Tells altered bytes from those that were written; not against intent.
-std::uint64_t checksum(std::span<const unsigned char> bytes, std::uint64_t start = 0);
-
 /// Throws InputError "<name>: level 2, face -Y, texel (3, 4) is nan ..." for a value that is not finite.
 void check_finite(const PrefilteredCube& cube, const std::string& name);
 

@@ -1,5 +1,6 @@
 // DDS with a DX10 header ("Programming Guide for DDS", learn.microsoft.com): "DDS ", a header of 124 bytes, one of 20,
 // then face after face, each with all its levels, the largest first.
+#include "common/services/byte_hash.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "common/services/output_file.h"
@@ -46,7 +47,7 @@ constexpr std::uint64_t kMostBytes = std::uint64_t(1) << 34, kLargestSize = 1638
 /// Of everything that follows the headers, and of what is said of the levels' lobes.
 std::uint32_t notes_checksum(std::uint64_t lobe, std::span<const unsigned char> notes,
                              std::span<const unsigned char> texels) {
-    return std::uint32_t(checksum(texels, checksum(notes, lobe)));
+    return std::uint32_t(byte_hash(std::as_bytes(texels), byte_hash(std::as_bytes(notes), lobe)));
 }
 
 class DdsReader {

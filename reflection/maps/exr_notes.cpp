@@ -1,9 +1,9 @@
 #include "reflection/maps/exr_notes.h"
 
 #include "common/scene/image_io.h"
+#include "common/services/byte_hash.h"
 #include "common/services/error.h"
 #include "common/services/output_file.h"
-#include "reflection/maps/cube_texels.h"
 
 #include <OpenImageIO/imageio.h>
 #include <array>
@@ -30,11 +30,8 @@ std::string checksum_of(const ExrNotes& notes, const Image& image) {
     for (const auto& [key, value] : notes)
         if (key != "checksum")
             text += key + '=' + value + '\n';
-    const auto bytes = [](const auto* data, std::size_t count) {
-        return std::span(reinterpret_cast<const unsigned char*>(data), count * sizeof *data);
-    };
     const std::uint64_t sum =
-        checksum(bytes(image.pixels.data(), image.pixels.size()), checksum(bytes(text.data(), text.size())));
+        byte_hash(std::as_bytes(std::span(image.pixels)), byte_hash(std::as_bytes(std::span(text))));
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(sum));
     return digits.data();

@@ -1,3 +1,4 @@
+#include "common/services/byte_hash.h"
 #include "common/services/output_file.h"
 #include "common/services/uninitialized_vector.h"
 #include "reflection/maps/cube_file.h"
@@ -73,9 +74,10 @@ std::vector<unsigned char> data_format_descriptor(TexelFormat format) {
 
 std::string checksum_text(std::string_view lobe, std::string_view parameters, std::span<const unsigned char> levels) {
     const std::string said = std::string(lobe) + " " + std::string(parameters);
-    const std::uint64_t start = checksum({reinterpret_cast<const unsigned char*>(said.data()), said.size()});
+    const std::uint64_t start = byte_hash(std::as_bytes(std::span(said)));
     std::array<char, 20> text;
-    std::snprintf(text.data(), text.size(), "%016llx", static_cast<unsigned long long>(checksum(levels, start)));
+    std::snprintf(text.data(), text.size(), "%016llx",
+                  static_cast<unsigned long long>(byte_hash(std::as_bytes(levels), start)));
     return text.data();
 }
 

@@ -1,5 +1,6 @@
 #include "reflection/maps/spectral_baker.h"
 #include "common/environment/split_lights.h"
+#include "common/services/checked_file.h"
 #include "common/services/error.h"
 #include "common/services/large_vector.h"
 #include "common/services/parallel.h"
@@ -9,7 +10,6 @@
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/spectral_plan.h"
 #include "reflection/maps/spectral_read.h"
-#include "reflection/maps/stored_setup.h"
 
 #include <algorithm>
 #include <cmath>
@@ -64,6 +64,25 @@ float scale_to_one(float most) {
     return most > 0 ? float(std::ldexp(1.0, std::clamp(-std::ilogb(most) - 1, -126, 126))) : 1.f;
 }
 
+constexpr CheckedFileKind kStoredSetup{{'K', 'o', 'k', 'a', 'g', 'e', 'S', 'H'},
+                                       2,
+                                       "stored set-up of the spectral baker",
+                                       "a map or images of another size, lobe, range or tolerance"};
+
+/// A stored set-up's arrays in the order in which they were written; empty ones where nothing is stored.
+class StoredArrays {
+  public:
+    StoredArrays() = default;
+    StoredArrays(const std::filesystem::path& path, std::uint64_t identity) : file_({path, kStoredSetup, identity}) {}
+    explicit operator bool() const { return file_.has_value(); }
+    std::span<const float> next() { return file_ ? file_->array<float>(next_++) : std::span<const float>(); }
+    const CheckedFile& file() const { return *file_; }
+
+  private:
+    std::optional<CheckedFile> file_;
+    std::size_t next_ = 0;
+};
+
 class SpectralBaker final : public Baker {
   public:
     SpectralBaker(const TexelLayout& layout, int width, int height, const SpectralSettings& settings,
@@ -73,8 +92,8 @@ class SpectralBaker final : public Baker {
 
   private:
     void place_texels();
-    void normalize(std::span<const float> stored);
-    void make_tables(std::span<const float>& stored, Progress& progress);
+    void normalize(StoredArrays& stored);
+    void make_tables(StoredArrays& stored, Progress& progress);
     std::vector<std::span<const float>> tables() const;
     std::uint64_t identity() const;
     void store(const std::filesystem::path& path, WorkReport& report) const;
@@ -114,13 +133,10 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
     const std::filesystem::path& path = settings.stored_setup;
     std::error_code ignored;
     const bool is_stored = !path.empty() && std::filesystem::exists(path, ignored);
-    std::vector<float> stored;
-    if (is_stored)
-        stored = read_setup(path, identity());
-    std::span<const float> rest(stored);
-    make_tables(rest, progress);
+    StoredArrays stored = is_stored ? StoredArrays(path, identity()) : StoredArrays();
+    make_tables(stored, progress);
     place_texels();
-    normalize(rest);
+    normalize(stored);
     report.stages.push_back({is_stored ? "reading the set-up" : "preparing harmonics", watch_.cpu(), watch_.wall()});
     if (!path.empty() && !is_stored)
         store(path, report);
@@ -137,7 +153,7 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
 
 /// Whatever the tables and factors depend on.
 std::uint64_t SpectralBaker::identity() const {
-    SetupIdentity identity;
+    FileIdentity identity;
     identity.add_value(int(layout_.kind));
     identity.add(std::as_bytes(std::span(layout_.directions)));
     identity.add(std::as_bytes(std::span(layout_.parameters)));
@@ -151,12 +167,11 @@ std::uint64_t SpectralBaker::identity() const {
     return identity.value();
 }
 
-void SpectralBaker::make_tables(std::span<const float>& stored, Progress& progress) {
+void SpectralBaker::make_tables(StoredArrays& stored, Progress& progress) {
     const std::vector<SpectralShell>& shells = plan_.shells();
     if (shells.empty())
         return;
-    analysis_.emplace(width_, height_, plan_.bands(), stored);
-    stored = stored.subspan(std::min(stored.size(), analysis_->tables().size()));
+    analysis_.emplace(width_, height_, plan_.bands(), stored.next());
     progress.advance(1);
     for (std::size_t begin = 0, end = 0; begin < shells.size(); begin = end) {
         progress.throw_if_stopped();
@@ -168,8 +183,7 @@ void SpectralBaker::make_tables(std::span<const float>& stored, Progress& progre
             even_zonals_.emplace_back(shells[end].zonal.begin(), shells[end].zonal.begin() + shells[end].even_bands);
             grids_.emplace_back(rings, 2 * rings);
         }
-        groups_.push_back({begin, end - begin, RingSynthesis(int(bands), rings, 2 * rings, stored)});
-        stored = stored.subspan(std::min(stored.size(), groups_.back().synthesis.tables().size()));
+        groups_.push_back({begin, end - begin, RingSynthesis(int(bands), rings, 2 * rings, stored.next())});
         progress.advance(end - begin);
     }
 }
@@ -185,9 +199,11 @@ std::vector<std::span<const float>> SpectralBaker::tables() const {
 
 void SpectralBaker::store(const std::filesystem::path& path, WorkReport& report) const {
     const Stopwatch watch;
-    std::vector<std::span<const float>> arrays = tables();
-    arrays.emplace_back(factors_);
-    write_setup(path, identity(), arrays);
+    std::vector<std::span<const std::byte>> arrays;
+    for (const std::span<const float> array : tables())
+        arrays.push_back(std::as_bytes(array));
+    arrays.push_back(std::as_bytes(std::span(factors_)));
+    write_checked_file(path, kStoredSetup, identity(), arrays);
     report.stages.push_back({"writing the set-up", watch.cpu(), watch.wall()});
 }
 
@@ -207,11 +223,14 @@ void SpectralBaker::place_texels() {
 
 /// The sum over pixels is divided by the sum of their weights ([R] eq 9), which is 1 but near the poles, where a row of
 /// pixels stands for a whole cap, and where pixels are coarse: the same bake of a white image.
-void SpectralBaker::normalize(std::span<const float> stored) {
+void SpectralBaker::normalize(StoredArrays& stored) {
     if (places_.empty())
         return;
-    factors_.assign(stored.begin(), stored.end());
-    if (factors_.empty()) {
+    const std::span<const float> known = stored.next();
+    factors_.assign(known.begin(), known.end());
+    if (stored && factors_.size() != layout_.size())
+        stored.file().refuse_altered("its texels are not as many as the map's");
+    if (!stored) {
         Image white(width_, height_, 3);
         std::fill(white.pixels.begin(), white.pixels.end(), 1.f);
         std::vector<glm::vec3> sums(layout_.size());

@@ -208,8 +208,7 @@ TEST(WeightTable, ComesBackFromAFileAndAnyOtherFileIsRefusedByName) {
     EXPECT_EQ(table.bytes(), again.bytes());
     EXPECT_EQ(table.unshared_bytes(), again.unshared_bytes());
 
-    std::ifstream in(file, std::ios::binary);
-    const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+    const std::string bytes = read_text(file);
     const auto expect_refusal = [&](std::string changed, const char* why) {
         const std::filesystem::path other = folder / "other.table";
         std::ofstream(other, std::ios::binary) << changed;
