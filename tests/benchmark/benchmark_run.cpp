@@ -3,6 +3,7 @@
 #include "common/services/error.h"
 #include "tests/benchmark/calibration.h"
 
+#include <algorithm>
 #include <iomanip>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -34,6 +35,17 @@ void BenchmarkRun::attempt(const std::string& what, const std::function<void()>&
 void BenchmarkRun::write(const std::string& name, const std::string& title, const nlohmann::json& records,
                          const std::string& figures, const std::string& table) const {
     write_benchmark(folder_, name, records, {title, calibration_, figures, table, notes_});
+}
+
+void check_experiments(const std::vector<std::string>& asked, const std::vector<std::string>& known) {
+    for (const std::string& name : asked) {
+        if (std::find(known.begin(), known.end(), name) != known.end())
+            continue;
+        std::string list;
+        for (const std::string& one : known)
+            list += (list.empty() ? "" : ", ") + one;
+        throw InputError("there is no experiment '" + name + "'; there are: " + list);
+    }
 }
 
 } // namespace kokage

@@ -36,4 +36,7 @@ class BenchmarkRun {
     int failures_ = 0;
 };
 
+/// Throws InputError that lists the experiments that there are, if one that is asked for is not among them.
+void check_experiments(const std::vector<std::string>& asked, const std::vector<std::string>& known);
+
 } // namespace kokage

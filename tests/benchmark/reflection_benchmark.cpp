@@ -1,5 +1,4 @@
 #include "tests/benchmark/reflection_benchmark.h"
-#include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "tests/benchmark/benchmark_run.h"
 #include "tests/benchmark/markdown.h"
@@ -96,14 +95,7 @@ std::vector<std::string> reflection_experiment_names() {
 }
 
 int run_reflection_benchmark(const ReflectionBenchmarkOptions& options, Progress& progress, std::ostream& out) {
-    const std::vector<std::string> names = reflection_experiment_names();
-    for (const std::string& asked : options.experiments)
-        if (std::find(names.begin(), names.end(), asked) == names.end()) {
-            std::string known;
-            for (const std::string& name : names)
-                known += (known.empty() ? "" : ", ") + name;
-            throw InputError("there is no experiment '" + asked + "'; there are: " + known);
-        }
+    check_experiments(options.experiments, reflection_experiment_names());
     if (options.threads > 0)
         set_thread_count(options.threads);
     return ReflectionRun(options, out).execute(progress);

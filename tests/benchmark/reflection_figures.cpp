@@ -1,5 +1,5 @@
-#include "tests/benchmark/markdown.h"
 #include "tests/benchmark/reflection_tables.h"
+#include "tests/benchmark/target_rows.h"
 
 #include <algorithm>
 #include <cmath>
@@ -31,24 +31,6 @@ Condition of(const std::string& experiment, const std::string& method, int size 
         return r.experiment == experiment && r.method == method && (size == 0 || r.size == size) &&
                (environment.empty() || r.environment == environment);
     };
-}
-
-std::string at_most(const std::string& what, std::optional<double> measured, double target, const std::string& unit) {
-    return markdown_row({what, measured ? three_digits(measured) + unit : "–", "≤ " + three_digits(target) + unit,
-                         !measured             ? "not measured"
-                         : *measured <= target ? "met"
-                                               : "**short**"});
-}
-
-std::string at_least(const std::string& what, std::optional<double> measured, double target, const std::string& unit) {
-    return markdown_row({what, measured ? three_digits(measured) + unit : "–", "≥ " + three_digits(target) + unit,
-                         !measured             ? "not measured"
-                         : *measured >= target ? "met"
-                                               : "**short**"});
-}
-
-std::optional<double> times(std::optional<double> value, double factor) {
-    return value ? std::optional(*value * factor) : std::nullopt;
 }
 
 std::string container_rows(const Records& records) {
@@ -124,8 +106,7 @@ std::string cmgen_rows(const Records& records) {
 } // namespace
 
 std::string reflection_figures(const Records& records) {
-    return markdown_row({"figure (the worst of all that were measured)", "measured", "target", ""}) +
-           markdown_row({"---", "---:", "---:", "---"}) +
+    return target_head() +
            at_most("table: mean error on the pattern, all thresholds",
                    worst(records, of("tables-2-3", "table", 0, "pattern"), &ReflectionRecord::mean_error_255), 0.05,
                    "/255") +

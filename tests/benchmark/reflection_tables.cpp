@@ -1,12 +1,11 @@
 #include "tests/benchmark/reflection_tables.h"
 #include "common/services/count_text.h"
+#include "tests/benchmark/curve_plot.h"
 #include "tests/benchmark/gnuplot.h"
 #include "tests/benchmark/markdown.h"
 
 #include <algorithm>
 #include <cstdio>
-#include <map>
-#include <sstream>
 
 namespace kokage {
 
@@ -88,28 +87,10 @@ std::vector<std::string> cells_of(const ReflectionRecord& r) {
             r.note};
 }
 
-std::string plot_script(const std::map<std::string, std::vector<std::pair<double, double>>>& curves,
-                        const std::string& file) {
-    std::ostringstream script;
-    script << "set terminal svg size 860,520 background 'white'\nset output '" << file
-           << "'\nset logscale xy\nset grid\nset key outside\nset xlabel 'mean error, steps of 255'\nset ylabel 'CPU "
-              "seconds after set-up, one core'\nset title 'A cube of 128^3 from an image of 512 x 256'\n";
-    std::size_t index = 0;
-    for (const auto& [name, points] : curves) {
-        script << "$data" << index++ << " << END\n";
-        for (const auto& [error, seconds] : points)
-            script << error << " " << seconds << "\n";
-        script << "END\n";
-    }
-    script << "plot ";
-    index = 0;
-    for (const auto& [name, points] : curves) {
-        script << (index ? ", " : "") << "$data" << index << " with linespoints linewidth 2 pointtype "
-               << index % 15 + 1 << " title \"" << name << "\" noenhanced";
-        ++index;
-    }
-    return script.str() + "\n";
-}
+/// For gnuplot.
+constexpr const char* kPlotSettings = "set logscale xy\nset xlabel 'mean error, steps of 255'\nset ylabel 'CPU seconds "
+                                      "after set-up, one core'\nset title 'A cube of 128^3 from an image of 512 x "
+                                      "256'\n";
 
 } // namespace
 
@@ -135,7 +116,7 @@ std::string reflection_tables(const Records& records) {
 std::string plot_reflection(const Records& records, const std::filesystem::path& folder) {
     if (!has_gnuplot())
         return kNoGnuplot;
-    std::map<std::string, std::vector<std::pair<double, double>>> curves;
+    Curves curves;
     for (const ReflectionRecord& r : records) {
         const bool spectral = r.experiment == "spectral" && r.method.starts_with("spectral"); // at all tolerances
         if ((spectral || r.experiment == "tables-2-3") && r.size == 128 && r.cpu_seconds && r.mean_error_255 &&
@@ -147,7 +128,8 @@ std::string plot_reflection(const Records& records, const std::filesystem::path&
         return "plots skipped: nothing to draw";
     for (auto& [name, points] : curves)
         std::sort(points.begin(), points.end());
-    if (!draw_plot(folder / "reflection-error.svg", [&](const std::string& svg) { return plot_script(curves, svg); }))
+    if (!draw_plot(folder / "reflection-error.svg",
+                   [&](const std::string& svg) { return curves_script(curves, kPlotSettings, svg); }))
         return "plots skipped: gnuplot failed";
     return "reflection-error.svg in " + folder.string();
 }
