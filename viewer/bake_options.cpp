@@ -53,7 +53,9 @@ void add_map_options(CLI::App& app, BakeOptions& o) {
 void add_method_options(CLI::App& app, BakeOptions& o) {
     app.add_option("--method", o.method,
                    "spectral (by spherical harmonics: exact to a tolerance), table (weights on geodesic domes, made "
-                   "once: fast, to a few levels of 256) or brute-force (the truth, slow)")
+                   "once: fast, to a few levels of 256 where pixels are at most 1) or brute-force (the truth, slow). "
+                   "The first two split the sun "
+                   "and lamps off and add them exactly")
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Method");
@@ -67,8 +69,8 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
         ->type_name("TH")
         ->group("Method");
     app.add_option("--weights", o.weights,
-                   "table: matched (to each lobe's mean direction), renormalised, or paper (cut and not normalised: "
-                   "loses light, as published)")
+                   "table: matched (to each lobe's mean direction), renormalised, or paper (cut, not normalised, no "
+                   "lamps split off: loses light and sees small lamps by chance, as published)")
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Method");

@@ -4,7 +4,7 @@
 #include "common/services/parallel.h"
 #include "reflection/maps/light_tree.h"
 #include "reflection/maps/lobe_sums.h"
-#include "reflection/maps/shell_map.h"
+#include "reflection/maps/lobe_width.h"
 
 #include <algorithm>
 #include <cmath>

@@ -10,6 +10,7 @@
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/spectral_plan.h"
 #include "reflection/maps/spectral_read.h"
+#include "reflection/maps/split_surroundings.h"
 
 #include <algorithm>
 #include <cmath>
@@ -99,8 +100,6 @@ class SpectralBaker final : public Baker {
     void store(const std::filesystem::path& path, WorkReport& report) const;
     void filter_smooth(const Image& image, const Range& range, std::span<glm::vec3> filtered, WorkReport& report,
                        Progress& progress);
-    void add_lights(const Image& image, std::span<const ClusterOfLight> in_image, std::span<const DistantLight> others,
-                    std::span<glm::vec3> filtered, WorkReport& report);
     void skip_bands(WorkReport& report) const;
     void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report, Progress& progress);
 
@@ -122,13 +121,13 @@ class SpectralBaker final : public Baker {
     std::vector<RingGrid> grids_;                           ///< of each shell
     LobeLights lights_;
     std::vector<float> factors_; ///< of each texel: 1 over the sum of its weights, 0 where it is summed pixel by pixel
-    double least_spread_ = 1;
+    double least_spread_;
 };
 
 SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, const SpectralSettings& settings,
                              WorkReport& report, Progress& progress)
     : layout_(layout), width_(width), height_(height), settings_(settings),
-      plan_(layout, width, height, settings.tolerance), lights_(layout_) {
+      plan_(layout, width, height, settings.tolerance), lights_(layout_), least_spread_(least_spread(layout_)) {
     progress.begin("preparing harmonics", plan_.shells().size() + 1);
     const std::filesystem::path& path = settings.stored_setup;
     std::error_code ignored;
@@ -209,10 +208,8 @@ void SpectralBaker::store(const std::filesystem::path& path, WorkReport& report)
 
 void SpectralBaker::place_texels() {
     std::vector<std::uint32_t> spectral;
-    for (std::size_t i = 0; i < layout_.size(); ++i) {
+    for (std::size_t i = 0; i < layout_.size(); ++i)
         (plan_.is_direct(layout_.parameters[i]) ? direct_ : spectral).push_back(std::uint32_t(i));
-        least_spread_ = std::min(least_spread_, lobe_spread({layout_.kind, double(layout_.parameters[i])}));
-    }
     places_.resize(spectral.size());
     parallel_blocks(spectral.size(), kReadBlock, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -309,33 +306,6 @@ void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filte
     report.stages.push_back({"summing pixel by pixel", watch.cpu(), watch.wall()});
 }
 
-void SpectralBaker::add_lights(const Image& image, std::span<const ClusterOfLight> in_image,
-                               std::span<const DistantLight> others, std::span<glm::vec3> filtered,
-                               WorkReport& report) {
-    if (in_image.empty() && others.empty())
-        return;
-    const Stopwatch watch;
-    std::vector<ClusterOfLight> clusters;
-    for (const DistantLight& light : others)
-        clusters.push_back(cluster_of(light, least_spread_));
-    const double mean = luminance_integral(image) / (4 * kPiDouble);
-    const float negligible = float(std::min(1e-6, 1e-2 * settings_.tolerance) * mean);
-    std::uint64_t lobes = 0;
-    if (!places_.empty())
-        lobes += lights_.add(in_image, negligible, factors_, filtered);
-    lobes += lights_.add(clusters, negligible, {}, filtered);
-    report.counts.push_back({"lobes of lights", lobes});
-    std::uint64_t most = 0;
-    for (const ClusterOfLight& cluster : in_image)
-        most += cluster.points.size() * places_.size();
-    for (const ClusterOfLight& cluster : clusters)
-        most += cluster.points.size() * layout_.size();
-    if (lobes < most)
-        report.skips.push_back({"lobes of lights out of reach", "they add less than a millionth of the mean radiance",
-                                std::to_string(most - lobes) + " of " + std::to_string(most) + " lobes"});
-    report.stages.push_back({"lobes of lights", watch.cpu(), watch.wall()});
-}
-
 void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> filtered, WorkReport& report,
                          Progress& progress) {
     const Image& image = surroundings.remainder;
@@ -346,32 +316,23 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
     if (filtered.size() != layout_.size())
         throw InputError("baking: " + std::to_string(filtered.size()) + " places for " +
                          std::to_string(layout_.size()) + " texels");
-    Stopwatch watch;
     progress.begin("filtering", direct_.size() + 1);
     const Range range = range_of(image);
     report.counts.push_back({"texels", layout_.size()});
-    std::vector<ClusterOfLight> lights;
+    SplitSurroundings split = split_surroundings(surroundings, least_spread_, report);
     if (range.least == range.most) {
         std::fill(filtered.begin(), filtered.end(), range.most);
         report.skips.push_back(
             {"harmonics beyond the first band", "the image has one colour",
              std::to_string(plan_.shells().size()) + " shells of up to " + std::to_string(plan_.bands()) + " bands"});
     } else {
-        LightSplitting splitting;
-        splitting.max_texels = 1 << 20;
-        LightSplit split = split_lights(image, splitting);
-        std::size_t pixels = 0;
-        for (const DistantLight& light : split.lights) {
-            lights.push_back(cluster_of(light, least_spread_));
-            pixels += light.texels.size();
-        }
-        report.counts.push_back({"lights split off", split.lights.size()});
-        report.counts.push_back({"pixels of lights", pixels});
-        report.stages.push_back({"splitting lights off", watch.cpu(), watch.wall()});
         filter_smooth(split.remainder, range_of(split.remainder), filtered, report, progress);
         filter_direct(image, filtered, report, progress);
     }
-    add_lights(image, lights, surroundings.distant_lights, filtered, report);
+    if (places_.empty())
+        split.of_image.clear(); // they are in what was summed pixel by pixel
+    const double mean = luminance_integral(image) / (4 * kPiDouble);
+    add_lights(split, lights_, factors_, float(std::min(1e-6, 1e-2 * settings_.tolerance) * mean), filtered, report);
     for (glm::vec3& value : filtered)
         value = glm::min(value, glm::vec3(std::numeric_limits<float>::max()));
     progress.advance(1);

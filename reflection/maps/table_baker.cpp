@@ -1,10 +1,10 @@
 #include "reflection/maps/table_baker.h"
-#include "common/services/parallel.h"
+#include "common/environment/split_lights.h"
 #include "common/services/stopwatch.h"
-#include "reflection/maps/lobe_over_cone.h"
+#include "reflection/maps/lobe_lights.h"
+#include "reflection/maps/split_surroundings.h"
 
 #include <limits>
-#include <optional>
 #include <stdexcept>
 
 namespace kokage {
@@ -33,7 +33,8 @@ WeightTable load_or_make(const TexelLayout& layout, const TableBakerSettings& se
 class TableBaker final : public Baker {
   public:
     TableBaker(const TexelLayout& layout, const TableBakerSettings& settings, WorkReport& report, Progress& progress)
-        : layout_(layout), table_(load_or_make(layout, settings, report, progress)) {
+        : layout_(layout), table_(load_or_make(layout, settings, report, progress)), lobes_(layout_),
+          least_spread_(least_spread(layout_)), as_published_(settings.table.weights == TableWeights::paper) {
         report.counts.push_back({"weights stored", table_.entries()});
         report.counts.push_back({"bytes of the weight table", table_.bytes()});
         if (table_.unshared_bytes() > 2 * table_.bytes())
@@ -45,36 +46,36 @@ class TableBaker final : public Baker {
               Progress& progress) override {
         if (filtered.size() != layout_.size())
             throw std::invalid_argument("as many places as the layout has texels are needed");
-        const Stopwatch sampling;
-        const DomeLight light = light_on_domes(surroundings.remainder);
-        report.stages.push_back({"sampling the domes", sampling.cpu(), sampling.wall()});
-        const Stopwatch summing;
+        const Image& image = surroundings.remainder;
+        WorkReport unused;
+        SplitSurroundings split = split_surroundings(surroundings, least_spread_, as_published_ ? unused : report);
+        if (as_published_ && !split.of_image.empty()) {
+            split.of_image.clear();
+            split.remainder = image;
+            report.warnings.push_back("the image has lights that the domes see or miss by chance, and the weights "
+                                      "'paper' split none off; with other weights, or the method spectral, they are "
+                                      "right");
+        }
+        Stopwatch watch;
+        const DomeLight light = light_on_domes(split.remainder);
+        report.stages.push_back({"sampling the domes", watch.cpu(), watch.wall()});
+        watch.restart();
         table_.filter(light, filtered, progress);
-        add_lights(surroundings.distant_lights, filtered, progress);
-        report.stages.push_back({"filtering by the table", summing.cpu(), summing.wall()});
+        report.stages.push_back({"filtering by the table", watch.cpu(), watch.wall()});
+        constexpr double kNegligible = 1e-6; // of the mean
+        add_lights(split, lobes_, {}, float(kNegligible * luminance_integral(image) / (4 * kPiDouble)), filtered,
+                   report);
+        for (glm::vec3& value : filtered)
+            value = glm::min(value, glm::vec3(std::numeric_limits<float>::max()));
         report.counts.push_back({"texels", layout_.size()});
-        report.counts.push_back({"lights", surroundings.distant_lights.size()});
     }
 
   private:
-    void add_lights(std::span<const DistantLight> lights, std::span<glm::vec3> filtered, Progress& progress) const {
-        if (lights.empty())
-            return;
-        parallel_blocks(layout_.size(), 1024, [&](std::size_t begin, std::size_t end) {
-            progress.throw_if_stopped();
-            for (std::size_t t = begin; t < end; ++t)
-                for (const DistantLight& light : lights) {
-                    const Lobe lobe{layout_.kind, double(layout_.parameters[t])};
-                    const glm::dvec3 radiance =
-                        glm::dvec3(filtered[t]) +
-                        light_through_lobe(light, lobe, glm::normalize(glm::dvec3(layout_.directions[t])));
-                    filtered[t] = glm::vec3(glm::min(radiance, glm::dvec3(double(std::numeric_limits<float>::max()))));
-                }
-        });
-    }
-
     TexelLayout layout_;
     WeightTable table_;
+    LobeLights lobes_;
+    double least_spread_;
+    bool as_published_; ///< nothing is split off
 };
 
 } // namespace

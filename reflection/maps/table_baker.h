@@ -14,9 +14,10 @@ struct TableBakerSettings {
 };
 
 /// Serves images of any size: an image of more than 512 x 256 pixels is reduced to that first, as coarse as the paper
-/// has it. Error: what the thresholds cut off, and the blur of a dome's spacing, which is about a tenth of the lobe's
-/// width (see weight_table.h); lobes narrower than the finest dome's spacing (0.9 degrees) show the dome itself. Lights
-/// of few pixels in HDR images are beyond it: a vertex sees them or not. Throws InputError, Stopped.
+/// has it. Lights of the image are split off before and added as lobes, as the spectral baker does, except with
+/// TableWeights::paper, which is as published: there an image with lights gives a warning. Error: what the thresholds
+/// cut off, and the blur of a dome's spacing, which is about a tenth of the lobe's width (see weight_table.h); lobes
+/// narrower than the finest dome's spacing (0.9 degrees) show the dome itself. Throws InputError, Stopped.
 std::unique_ptr<Baker> table_baker(const TexelLayout& layout, const TableBakerSettings& settings, WorkReport& report,
                                    Progress& progress = silent_progress());
 

@@ -5,8 +5,8 @@
 #include "reflection/maps/table_baker.h"
 #include "tests/support/temporary_folder.h"
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <gtest/gtest.h>
 
 namespace kokage {
@@ -85,6 +85,53 @@ TEST(TableBaker, FiltersTheLightsThatWereAdded) {
     sun.irradiance = glm::vec3(3, 2, 1);
     environment.distant_lights.push_back(sun);
     EXPECT_LT(mean_difference_255(few_texels(LobeKind::phong, {1, 20}), environment, {}), 0.8);
+}
+
+Environment sun_of_one_pixel() {
+    Environment environment = smooth_surroundings(512, 256);
+    for (int c = 0; c < 3; ++c)
+        environment.remainder.at(180, 78)[c] = 1e6f;
+    return environment;
+}
+
+double largest_relative_difference(std::span<const glm::vec3> values, std::span<const glm::vec3> truth) {
+    double largest = 0;
+    for (std::size_t t = 0; t < truth.size(); ++t)
+        for (glm::length_t c = 0; c < 3; ++c)
+            largest = std::max(largest, std::abs(double(values[t][c]) - double(truth[t][c])) /
+                                            std::max(double(truth[t][c]), 0.1));
+    return largest;
+}
+
+TEST(TableBaker, SplitsLightsOffTheImage) {
+    const Environment environment = sun_of_one_pixel();
+    for (const TexelLayout& layout :
+         {few_texels(LobeKind::phong, {1, 20, 300, 5000}), few_texels(LobeKind::ggx, {0.2f, 0.6f})}) {
+        std::vector<glm::vec3> truth(layout.size()), filtered(layout.size());
+        WorkReport report;
+        brute_force_baker(layout, 512, 256)->bake(environment, truth, report);
+        for (const TableWeights weights : {TableWeights::matched, TableWeights::renormalised}) {
+            table_baker(layout, {.table = {.weights = weights}}, report)->bake(environment, filtered, report);
+            EXPECT_LT(largest_relative_difference(filtered, truth), 0.03); // of what is smooth, of GGX's tails
+        }
+        EXPECT_TRUE(report.warnings.empty());
+    }
+}
+
+TEST(TableBaker, ThePapersWeightsStayAsPublishedAndSayWhatTheyMiss) {
+    const Environment environment = sun_of_one_pixel();
+    const TexelLayout layout = few_texels(LobeKind::phong, {20, 300});
+    const TableSettings paper{.weights = TableWeights::paper};
+    std::vector<glm::vec3> published(layout.size()), filtered(layout.size());
+    WeightTable(layout, paper).filter(light_on_domes(environment.remainder), published);
+    WorkReport report;
+    const auto baker = table_baker(layout, {.table = paper}, report);
+    baker->bake(environment, filtered, report);
+    EXPECT_EQ(filtered, published);
+    ASSERT_EQ(report.warnings.size(), 1u);
+    EXPECT_NE(report.warnings[0].find("lights"), std::string::npos);
+    baker->bake(smooth_surroundings(512, 256), filtered, report);
+    EXPECT_EQ(report.warnings.size(), 1u) << "no lights, no warning";
 }
 
 TEST(TableBaker, KeepsItsTableAndTakesNoOther) {
