@@ -10,45 +10,57 @@ namespace {
 constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr double kBelowAll = 1 + 1e-9; ///< rays end here, so that rounding does not end them above a surface of depth 1
 
-/// A ray in texels: centres of texels at whole numbers.
+/// The part of a ray that can hit anything, in texels: centres of texels at whole numbers.
 struct TexelRay {
-    glm::dvec3 origin{0.}, direction{0.}; ///< x, y in texels, depth
-    double t_first = 0, t_last = 0;       ///< the part that can hit anything; none where t_first > t_last
+    glm::dvec3 origin{0.}, direction{0.}; ///< x, y in texels, depth; the origin is where the part begins
+    double t_base = 0;                    ///< where that is on the ray as it was given
+    double length = -1;                   ///< of the part, in t; negative: nothing can be hit
+    glm::dvec2 moved{0.};                 ///< tiles that the origin was moved by
 };
 
 bool is_finite(const glm::vec3& v) {
     return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
+/// Where to move `coordinate` of a ray's beginning, so that no precision is lost far away and the ray sees the same.
+double near_tile(double coordinate, HeightWrap wrap) {
+    if (wrap == HeightWrap::repeat)
+        return coordinate - std::floor(coordinate);
+    // From beyond this no ray gets back to the tile: all that it sees is the border.
+    constexpr double beyond = 2 * double(kMostTilesCrossed);
+    return std::clamp(coordinate, -beyond, beyond);
+}
+
 TexelRay texel_ray(const HeightField& field, const ReliefRay& ray) {
     TexelRay r;
-    r.t_last = -1;
     if (!is_finite(ray.origin) || !is_finite(ray.direction) || std::isnan(ray.t_most))
         return r;
-    glm::dvec3 origin(ray.origin);
-    const glm::dvec3 direction(ray.direction);
-    if (field.wrap == HeightWrap::repeat)
-        origin = {origin.x - std::floor(origin.x), origin.y - std::floor(origin.y), origin.z};
-    r.t_first = 0;
-    r.t_last = ray.t_most;
-    if (origin.z < 0)
-        r.t_first = direction.z > 0 ? -origin.z / direction.z : kNever;
+    const glm::dvec3 origin(ray.origin), direction(ray.direction);
+    if (origin.z < 0) {
+        if (!(direction.z > 0))
+            return r;
+        r.t_base = -origin.z / direction.z;
+    }
+    const glm::dvec3 start(glm::dvec2(origin) + r.t_base * glm::dvec2(direction), std::max(0., origin.z));
+    r.length = std::min(double(ray.t_most), double(std::numeric_limits<float>::max())) - r.t_base;
     if (direction.z > 0)
-        r.t_last = std::min(r.t_last, std::max((kBelowAll - origin.z) / direction.z, r.t_first));
+        r.length = std::min(r.length, std::max(0., (kBelowAll - start.z) / direction.z));
     if (direction.z < 0)
-        r.t_last = std::min(r.t_last, std::max(0., -origin.z / direction.z));
+        r.length = std::min(r.length, start.z / -direction.z);
     const double tiles = std::max(std::abs(direction.x), std::abs(direction.y));
     if (tiles > 0)
-        r.t_last = std::min(r.t_last, r.t_first + double(kMostTilesCrossed) / tiles);
+        r.length = std::min(r.length, double(kMostTilesCrossed) / tiles);
     else if (direction.z == 0)
-        r.t_last = std::min(r.t_last, 0.);
-    const glm::dvec2 size(field.width, field.height);
-    r.origin = glm::dvec3(glm::dvec2(origin) * size - 0.5, origin.z);
+        r.length = std::min(r.length, 0.);
+    const glm::dvec2 size(field.width, field.height),
+        near(near_tile(start.x, field.wrap), near_tile(start.y, field.wrap));
+    r.moved = near - glm::dvec2(start);
+    r.origin = glm::dvec3(near * size - 0.5, start.z);
     r.direction = glm::dvec3(glm::dvec2(direction) * size, direction.z);
     return r;
 }
 
-/// Ray's depth - surface's depth within a cell is c + b s + a s², s = t - `start`: >= 0 is below the surface.
+/// Ray's depth - surface's depth within a cell is c + b s + a s², s from `start` on: >= 0 is below the surface.
 struct Quadratic {
     double a = 0, b = 0, c = 0;
 
@@ -114,22 +126,21 @@ void walk_cells(const TexelRay& ray, double t_first, double t_last, Visit&& visi
 TrueReliefHit true_relief_hit(const HeightField& field, const ReliefRay& ray) {
     TrueReliefHit hit;
     const TexelRay r = texel_ray(field, ray);
-    if (!(r.t_first <= r.t_last) || r.t_first == kNever)
+    if (r.length < 0)
         return hit;
-    walk_cells(r, r.t_first, r.t_last, [&](long long i, long long j, double t_in, double t_out) {
+    walk_cells(r, 0, r.length, [&](long long i, long long j, double t_in, double t_out) {
         ++hit.reads;
         const BilinearCell cell = bilinear_cell(field, i, j);
         const double s = first_not_negative(ray_over_cell(r, cell, t_in, double(i), double(j)), t_out - t_in);
         if (s == kNever)
             return false;
-        hit.t = t_in + s;
-        const glm::dvec3 p = r.origin + hit.t * r.direction;
+        hit.t = r.t_base + t_in + s;
+        const glm::dvec3 p = r.origin + (t_in + s) * r.direction;
         const glm::dvec2 size(field.width, field.height), inside = glm::clamp(glm::dvec2(p) - glm::dvec2(i, j), 0., 1.);
         hit.depth = cell.depth(inside.x, inside.y);
         hit.slope = glm::dvec2(cell.du + inside.y * cell.duv, cell.dv + inside.x * cell.duv) * size;
         hit.coordinate = (glm::dvec2(p) + 0.5) / size;
-        if (field.wrap == HeightWrap::repeat)
-            hit.coordinate -= glm::floor(hit.coordinate);
+        hit.coordinate -= field.wrap == HeightWrap::repeat ? glm::floor(hit.coordinate) : r.moved;
         return true;
     });
     return hit;
@@ -138,8 +149,8 @@ TrueReliefHit true_relief_hit(const HeightField& field, const ReliefRay& ray) {
 double greatest_depth_below(const HeightField& field, const ReliefRay& ray, double t0, double t1) {
     const TexelRay r = texel_ray(field, ray);
     double greatest = -kNever;
-    t0 = std::max(t0, r.t_first);
-    t1 = std::min(t1, r.t_last);
+    t0 = std::max(t0 - r.t_base, 0.);
+    t1 = std::min(t1 - r.t_base, r.length);
     if (!(t0 <= t1))
         return greatest;
     walk_cells(r, t0, t1, [&](long long i, long long j, double t_in, double t_out) {

@@ -16,12 +16,13 @@ struct ReliefRay {
     float t_most = std::numeric_limits<float>::infinity(); ///< hits beyond do not count
 };
 
-/// A ray that crosses more tiles than this along u or v without a hit hits nothing (only rays that are very nearly
-/// parallel to the surface do).
+/// A ray that crosses more tiles than this along u or v, from where it passes depth 0, without a hit hits nothing (only
+/// rays that are very nearly parallel to the surface do).
 inline constexpr float kMostTilesCrossed = 1024;
 
 /// First hit: the least t >= 0 at which the ray is not above the surface. A ray that starts below the surface hits at
-/// t = 0. A ray that leaves upwards through depth 0, that passes t_most or that is not finite hits nothing.
+/// t = 0. A ray that leaves upwards through depth 0, that passes t_most or that is not finite hits nothing. Nor does
+/// one that gets nowhere (direction 0) from above the surface, or whose t of the hit no float can hold.
 struct ReliefHit {
     float t = std::numeric_limits<float>::infinity(); ///< infinity: nothing was hit, and the rest means nothing
     glm::vec2 coordinate{0.f};                        ///< u, v; for a repeated tile within [0, 1)
