@@ -37,6 +37,13 @@ void add_map_options(CLI::App& app, BakeOptions& o) {
                    "larger than its lobes need")
         ->type_name("A,B")
         ->group("Map");
+    app.add_option(
+           "--roughness-scale", o.roughness_scale,
+           "Phong: which exponent a smoothness stands for, in a cube's voxels and in --smoothness: solved (1 is "
+           "the exponent 5000) or paper (u = 6.2 as published: with 128 voxels 1 is 4733)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Map");
     app.add_option("--detail", o.detail, "shells: texels in a lobe's width (otherwise 1.15)")
         ->type_name("X")
         ->group("Map");
@@ -142,6 +149,13 @@ void complete_size(BakeOptions& o) {
     o.map.levels = o.levels.value_or(0);
     o.map.texels_a_width = o.detail.value_or(o.map.texels_a_width);
     o.map.filter = o.filter == "cubic" ? TexelFilter::cubic : TexelFilter::bilinear;
+    o.map.scale = scale_rule_from_name(o.roughness_scale);
+    if (o.map.scale == ScaleRule::paper && o.map.lobe != LobeKind::phong)
+        refuse("--roughness-scale", "the paper's scale is of Phong's lobe, and this map has GGX's, whose roughness is "
+                                    "glTF's; give --lobe phong, or leave it out");
+    if (o.map.scale == ScaleRule::paper && container != MapContainer::voxel_cube && o.smoothness.empty())
+        refuse("--roughness-scale", "it places the voxels of --container cube and tells what --smoothness means; give "
+                                    "one of them, or leave it out");
     if (o.smoothness.empty())
         return;
     const std::vector<double> range = numbers_from(o.smoothness, "--smoothness");

@@ -14,7 +14,7 @@ struct BakeOptions {
     Surroundings surroundings; ///< .environment is ENV
     std::filesystem::path data;
 
-    std::string container, lobe, smoothness, filter = "bilinear", format = "half";
+    std::string container, lobe, smoothness, filter = "bilinear", format = "half", roughness_scale = "solved";
     std::optional<int> size, levels;
     std::optional<double> detail;
 

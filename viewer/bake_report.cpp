@@ -53,6 +53,8 @@ Json bake_identity(const BakeOptions& o) {
                  {"method", o.method},
                  {"lights", o.surroundings.lights},
                  {"strict", o.surroundings.strict}};
+    if (o.map.lobe == LobeKind::phong)
+        json["roughness_scale"] = o.roughness_scale;
     if (o.baker.method == BakeMethod::spectral)
         json["tolerance"] = o.baker.tolerance;
     if (o.baker.method == BakeMethod::table) {
@@ -71,6 +73,11 @@ Json bake_report(const BakeRecord& record) {
                    {"container", map_container_name(o.map.container)},
                    {"filtered_texels", record.map->layout().size()},
                    {"bytes", record.map->bytes()}};
+    if (o.map.lobe == LobeKind::phong) {
+        const RoughnessScale scale = scale_of(o.map);
+        json["map"]["roughness_scale"] = {
+            {"u", scale.u()}, {"levels", scale.levels()}, {"cube_size", scale.cube_size()}};
+    }
     if (record.sequence)
         json["sequence"] = sequence_json(*record.sequence);
     json["counts"] = Json::object();

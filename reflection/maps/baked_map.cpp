@@ -213,7 +213,16 @@ std::string_view map_container_name(MapContainer container) {
 
 RoughnessScale scale_of(const MapSettings& settings) {
     const bool own = settings.container == MapContainer::voxel_cube && settings.size > 0;
-    return RoughnessScale::solved(own ? settings.size : kPapersSize);
+    const int size = own ? settings.size : kPapersSize;
+    return settings.scale == ScaleRule::paper ? RoughnessScale::as_printed(size) : RoughnessScale::solved(size);
+}
+
+ScaleRule scale_rule_from_name(std::string_view name) {
+    if (name == "solved")
+        return ScaleRule::solved;
+    if (name == "paper")
+        return ScaleRule::paper;
+    throw InputError("there is no scale of roughness called '" + std::string(name) + "'; there are: solved, paper");
 }
 
 std::unique_ptr<BakedMap> make_map(const MapSettings& settings) {
@@ -222,6 +231,8 @@ std::unique_ptr<BakedMap> make_map(const MapSettings& settings) {
         if (!(roughest >= 0 && roughest <= smoothest && smoothest <= 1))
             throw InputError("a range of smoothness goes from rough to smooth, within 0 and 1: 0.3,0.6");
     }
+    if (settings.scale == ScaleRule::paper && settings.lobe != LobeKind::phong)
+        throw InputError("the paper's scale of roughness is of Phong's lobe; GGX has glTF's roughness");
     switch (settings.container) {
     case MapContainer::voxel_cube:
         return std::make_unique<Voxels>(settings);

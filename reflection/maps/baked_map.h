@@ -25,6 +25,14 @@ struct SmoothnessRange {
     double roughest = 0, smoothest = 1;
 };
 
+/// Which u of [R] eq 12 (roughness_scale.h) tells smoothness from exponents.
+enum class ScaleRule {
+    solved, ///< that of Λ = 5000 at λ = 1, whatever the cube's size
+    paper,  ///< 6.2 as printed, which is Λ = 4733 at λ = 1 of 128 voxels
+};
+/// "solved", "paper"; throws InputError that lists them.
+ScaleRule scale_rule_from_name(std::string_view name);
+
 struct MapSettings {
     MapContainer container = MapContainer::shells;
     LobeKind lobe = LobeKind::phong;
@@ -38,9 +46,12 @@ struct MapSettings {
     /// Only this part is baked, at the resolution that it needs. Empty = all: shells from Λ = 1 (roughness 1) to Λ =
     /// 5000, the cube's every voxel, cube maps from the image itself to roughness 1.
     std::optional<SmoothnessRange> smoothness{};
+    /// Where the cube's voxels stand, and how `smoothness` is read. Phong alone has another than `solved`.
+    ScaleRule scale = ScaleRule::solved;
 };
 
-/// The scale that `smoothness` is read by: of the cube's own size, else of 128, the paper's.
+/// The scale that `smoothness` is read by: of the cube's own size, else of 128, the paper's. Files of cubes keep it,
+/// and their lookups go by it.
 RoughnessScale scale_of(const MapSettings& settings);
 
 class BakedMap {

@@ -85,6 +85,31 @@ TEST(BakedMap, ARangeOfACubeBakesTheVoxelsThatItsLookupsReadAndNoOthers) {
     }
 }
 
+TEST(BakedMap, ACubeOfThePapersScaleKeepsItAndIsLookedUpByIt) {
+    const TemporaryFolder folder;
+    MapSettings settings;
+    settings.container = MapContainer::voxel_cube;
+    settings.size = 64;
+    settings.scale = ScaleRule::paper;
+    settings.format = TexelFormat::float_rgb;
+    settings.smoothness = SmoothnessRange{0.45, 0.55};
+    const Environment environment = stripes();
+    WorkReport report;
+    baked(settings, environment)->write(folder / "m.exr", "", report);
+    const VoxelCube cube = std::get<VoxelCube>(read_map(folder / "m.exr").map);
+    EXPECT_EQ(cube.scale().u(), 6.2);
+    // Eqs 12 and 13, written out: u/(λ s) = 6.2/32, Λ = 2 ln 256 / ln(1 + (6.2/32)²).
+    const double exponent = 2 * std::log(256.0) / std::log(1 + 6.2 * 6.2 / (32.0 * 32.0));
+    EXPECT_NEAR(exponent, 301, 1);
+    EXPECT_NEAR(double(cube.smoothness(exponent)), 0.5, 1e-6);
+    for (const glm::vec3 direction : {glm::vec3(1, 2, 3), glm::vec3(-3, 0.5f, 1)})
+        EXPECT_LT(truth_error(environment, {LobeKind::phong, exponent}, direction,
+                              cube.lookup(glm::normalize(direction), cube.smoothness(exponent))),
+                  0.02);
+    settings.lobe = LobeKind::ggx;
+    EXPECT_THROW(make_map(settings), InputError);
+}
+
 TEST(BakedMap, CubeMapsHoldTheImageAndItsFilteredLevels) {
     const TemporaryFolder folder;
     MapSettings settings;

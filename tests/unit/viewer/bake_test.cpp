@@ -75,11 +75,13 @@ TEST(Bake, MethodsAgreeAndContainersAreWhatTheirEndingSays) {
     save_image(folder / "in.exr", gradient_image(32, 16));
     std::vector<glm::vec3> values;
     for (const std::string method : {"spectral", "table", "brute-force"}) {
-        const ProgramRun run =
-            run_kokage({"bake", "in.exr", "--container", "cube", "--size", "16", "--method", method, "-o", "m.exr"},
-                       folder.path());
+        const ProgramRun run = run_kokage({"bake", "in.exr", "--container", "cube", "--size", "16", "--method", method,
+                                           "--roughness-scale", "paper", "-o", "m.exr"},
+                                          folder.path());
         ASSERT_EQ(run.status, 0) << run.errors;
-        values.push_back(std::get<VoxelCube>(read_map(folder / "m.exr").map).lookup({0, -1, 0}, 0.8f));
+        const VoxelCube cube = std::get<VoxelCube>(read_map(folder / "m.exr").map);
+        EXPECT_EQ(cube.scale().u(), 6.2);
+        values.push_back(cube.lookup({0, -1, 0}, 0.8f));
     }
     EXPECT_LT(glm::distance(values[0], values[2]), 2e-3f);
     EXPECT_LT(glm::distance(values[1], values[2]), 2e-2f);
@@ -213,6 +215,9 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
         {{"in.exr", "--smoothness", "0.6,0.3", "-o", "m.exr"}, "rough first"},
         {{"in.exr", "--smoothness", "0.6", "-o", "m.exr"}, "rough first"},
         {{"in.exr", "--smoothness", "a,b", "-o", "m.exr"}, "--smoothness"},
+        {{"in.exr", "--roughness-scale", "paper", "-o", "m.exr"}, "--container cube"},
+        {{"in.exr", "--roughness-scale", "paper", "--lobe", "ggx", "--container", "cube", "-o", "m.exr"},
+         "--lobe phong"},
         {{"in.exr", "--tolerance", "1e-9", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "nan", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "0.01", "--method", "table", "-o", "m.exr"}, "can't aim at an error"},
