@@ -1,7 +1,6 @@
 #include "foliage/captured_maps.h"
-#include "common/directions/lobes.h"
 #include "common/directions/spherical_harmonics.h"
-#include "common/directions/zonal.h"
+#include "common/environment/light_harmonics.h"
 #include "common/services/parallel.h"
 
 #include <algorithm>
@@ -9,26 +8,6 @@
 #include <utility>
 
 namespace kokage {
-
-namespace {
-
-/// Radiance integrated over a uniform cap, from the irradiance on a surface that faces it: solid angle 2pi(1-c) over pi
-/// sin^2.
-double flux_per_irradiance(double half_angle) {
-    return 2 / (1 + std::cos(half_angle));
-}
-
-} // namespace
-
-std::vector<glm::vec3> project_light(const DistantLight& light, int bands) {
-    std::vector<glm::vec3> coefficients(sh_count(bands), glm::vec3(0.f));
-    if (light.texels.empty())
-        add_zonal(coefficients, light.direction, light.irradiance * float(flux_per_irradiance(light.half_angle)),
-                  cone_lobe(bands, light.half_angle));
-    for (const DistantLight::Texel& texel : light.texels) // radiance x solid angle: already a flux
-        add_zonal(coefficients, texel.direction, texel.irradiance, std::vector<double>(std::size_t(bands), 1.0));
-    return coefficients;
-}
 
 void MapCoefficients::scale_bands(std::span<const double> factors) {
     for (std::size_t map = 0; map < maps_; ++map)

@@ -70,8 +70,4 @@ class CapturedMaps {
     Capture capture_;
 };
 
-/// The distant light's radiance in SH: irradiance on a facing surface as radiance, integrated over disc, direction or
-/// texels.
-std::vector<glm::vec3> project_light(const DistantLight& light, int bands);
-
 } // namespace kokage

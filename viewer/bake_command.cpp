@@ -32,6 +32,11 @@ void print_stages(const WorkReport& work) {
 }
 
 void print_map(const BakeOptions& options, const BakedMap& map) {
+    if (options.map.container == MapContainer::harmonics) {
+        std::printf("spherical harmonics of %s, %s\n", options.quantity.c_str(),
+                    counted(std::uint64_t(options.map.harmonics.bands), "band", "bands").c_str());
+        return;
+    }
     std::printf("%s, %s: %s, %s, by %s\n", std::string(map_container_name(options.map.container)).c_str(),
                 std::string(lobe_kind_name(options.map.lobe)).c_str(),
                 counted(map.layout().size(), "filtered texel", "filtered texels").c_str(),
@@ -164,7 +169,8 @@ void bake_video(const BakeOptions& options, const CommandContext& context) {
 Command bake_command(CLI::App& program) {
     const auto options = std::make_shared<BakeOptions>();
     CLI::App* app = program.add_subcommand("bake", "Bake a reflection map: surroundings filtered for every roughness");
-    app->footer("\nExamples: kokage bake forest.hdr -o forest.ktx2\n          kokage bake sky --sun 250,20 "
+    app->footer("\nExamples: kokage bake forest.hdr -o forest.ktx2\n          kokage bake forest.hdr --quantity "
+                "irradiance -o forest.json\n          kokage bake sky --sun 250,20 "
                 "--smoothness 0.3,0.6 -o evening.exr\n          kokage bake 'frames/%04d.hdr' --container cube "
                 "--size 64 -o 'maps/%04d.exr'");
     add_bake_options(*app, *options);

@@ -57,6 +57,21 @@ void add_map_options(CLI::App& app, BakeOptions& o) {
         ->group("Map");
 }
 
+void add_harmonics_options(CLI::App& app, BakeOptions& o) {
+    app.add_option("--bands", o.bands, "Bands of harmonics, N x N coefficients (otherwise 3)")
+        ->type_name("N")
+        ->group("Harmonics (.json)");
+    app.add_option("--quantity", o.quantity,
+                   "radiance, or irradiance: what a surface with that normal receives (pi under a sky of 1)")
+        ->type_name("NAME")
+        ->capture_default_str()
+        ->group("Harmonics (.json)");
+    app.add_flag("--list-lights", o.list_lights,
+                 "Sun, lamps and added lights are listed beside the coefficients, which are of the rest; otherwise all "
+                 "is in the coefficients")
+        ->group("Harmonics (.json)");
+}
+
 void add_method_options(CLI::App& app, BakeOptions& o) {
     app.add_option("--method", o.method,
                    "spectral (by spherical harmonics: exact to a tolerance), table (weights on geodesic domes, made "
@@ -90,8 +105,8 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
 
 void add_output_options(CLI::App& app, BakeOptions& o) {
     app.add_option("-o,--output", o.output,
-                   "The map: .exr (shells or cube), .ktx2 or .dds (a cube map, a roughness a mip level); for a video a "
-                   "pattern such as maps/%04d.ktx2")
+                   "The map: .exr (shells or cube), .ktx2 or .dds (a cube map, a roughness a mip level), .json "
+                   "(spherical harmonics); for a video a pattern such as maps/%04d.ktx2")
         ->type_name("OUT")
         ->required()
         ->group("Output");
@@ -124,6 +139,44 @@ void complete_container(BakeOptions& o) {
     if (o.map.format == TexelFormat::shared_exponent && (ending == ".dds" || o.container == "cube"))
         refuse("--format", "shared-exponent goes with shells and .ktx2, not with " +
                                std::string(ending == ".dds" ? ".dds" : "a voxel cube") + "; give half or float");
+}
+
+/// Harmonics are no map of texels: what shapes those has no place there, and the other way round.
+void complete_harmonics(BakeOptions& o) {
+    const BakeOptions plain;
+    const std::pair<const char*, bool> of_harmonics[] = {{"--bands", o.bands.has_value()},
+                                                         {"--quantity", o.quantity != plain.quantity},
+                                                         {"--list-lights", o.list_lights}};
+    const std::pair<const char*, bool> of_maps[] = {{"--container", !o.container.empty()},
+                                                    {"--lobe", !o.lobe.empty()},
+                                                    {"--size", o.size.has_value()},
+                                                    {"--levels", o.levels.has_value()},
+                                                    {"--smoothness", !o.smoothness.empty()},
+                                                    {"--roughness-scale", o.roughness_scale != plain.roughness_scale},
+                                                    {"--detail", o.detail.has_value()},
+                                                    {"--filter", o.filter != plain.filter},
+                                                    {"--format", o.format != plain.format},
+                                                    {"--method", o.method != plain.method},
+                                                    {"--tolerance", o.tolerance.has_value()},
+                                                    {"--threshold", o.threshold.has_value()},
+                                                    {"--weights", o.weights != plain.weights},
+                                                    {"--stored", !o.stored.empty()}};
+    const bool harmonics = lower_ending(o.output) == ".json";
+    for (const auto& [option, given] : of_harmonics)
+        if (given && !harmonics)
+            refuse(option, "it shapes spherical harmonics; write a .json, or leave it out");
+    for (const auto& [option, given] : of_maps)
+        if (given && harmonics)
+            refuse(option, "it shapes maps of texels, and a .json holds spherical harmonics; leave it out");
+    if (!harmonics)
+        return;
+    o.map.container = MapContainer::harmonics;
+    o.map.harmonics.bands = o.bands.value_or(o.map.harmonics.bands);
+    o.map.harmonics.quantity = harmonic_quantity_from_name(o.quantity);
+    o.map.harmonics.list_lights = o.list_lights;
+    if (o.map.harmonics.bands < 1 || o.map.harmonics.bands > HarmonicsSettings::most_bands)
+        refuse("--bands", std::to_string(o.map.harmonics.bands) + " is not from 1 to " +
+                              std::to_string(HarmonicsSettings::most_bands));
 }
 
 void complete_size(BakeOptions& o) {
@@ -193,8 +246,8 @@ void complete_outputs(BakeOptions& o) {
         refuse("--broken-frames", "'" + o.broken_frames + "' is not known; give skip or stop");
     if (o.is_sequence) {
         const std::string ending = lower_ending(o.output);
-        if (ending != ".exr" && ending != ".ktx2" && ending != ".dds")
-            refuse("-o", "the maps can't be '" + o.output + "'; give one of .exr, .ktx2, .dds");
+        if (ending != ".exr" && ending != ".ktx2" && ending != ".dds" && ending != ".json")
+            refuse("-o", "the maps can't be '" + o.output + "'; give one of .exr, .ktx2, .dds, .json");
         const fs::path frames(o.surroundings.environment), maps = fs::absolute(o.output).parent_path();
         if (fs::is_directory(frames) && fs::weakly_canonical(frames) == fs::weakly_canonical(maps))
             refuse("-o",
@@ -203,7 +256,7 @@ void complete_outputs(BakeOptions& o) {
         if (numbered)
             refuse("-o", "'" + o.output + "' has a place for frames' numbers, but '" + o.surroundings.environment +
                              "' is one environment; give a folder of images, a list (.txt) or a pattern");
-        check_output(o.output, "the map", {".exr", ".ktx2", ".dds"});
+        check_output(o.output, "the map", {".exr", ".ktx2", ".dds", ".json"});
         check_distinct({fs::path(o.surroundings.environment), fs::path(o.output), o.report, o.stored});
     }
     if (!o.report.empty())
@@ -223,6 +276,7 @@ void add_bake_options(CLI::App& app, BakeOptions& o) {
         ->required();
     add_data_option(app, o.data, "ENV is");
     add_map_options(app, o);
+    add_harmonics_options(app, o);
     add_method_options(app, o);
     add_light_options(app, o.surroundings);
     add_output_options(app, o);
@@ -231,8 +285,11 @@ void add_bake_options(CLI::App& app, BakeOptions& o) {
 void complete_bake_options(BakeOptions& o) {
     o.surroundings.option = "ENV";
     find_in_data(o.data, {&o.surroundings.environment});
-    complete_container(o);
-    complete_size(o);
+    complete_harmonics(o);
+    if (o.map.container != MapContainer::harmonics) {
+        complete_container(o);
+        complete_size(o);
+    }
     complete_method(o);
     complete_outputs(o);
     if (!o.is_sequence)

@@ -18,6 +18,10 @@ struct BakeOptions {
     std::optional<int> size, levels;
     std::optional<double> detail;
 
+    std::optional<int> bands;
+    std::string quantity = "radiance";
+    bool list_lights = false;
+
     std::string method = "spectral", weights = "matched";
     std::optional<double> tolerance, threshold;
     std::filesystem::path stored;

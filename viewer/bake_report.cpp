@@ -40,6 +40,11 @@ Json sequence_json(const SequenceResult& result) {
 } // namespace
 
 Json bake_identity(const BakeOptions& o) {
+    if (o.map.container == MapContainer::harmonics)
+        return {{"program", "kokage " KOKAGE_VERSION}, {"container", map_container_name(o.map.container)},
+                {"bands", o.map.harmonics.bands},      {"quantity", o.quantity},
+                {"list_lights", o.list_lights},        {"output", std::filesystem::path(o.output).filename().string()},
+                {"lights", o.surroundings.lights},     {"strict", o.surroundings.strict}};
     Json json = {{"program", "kokage " KOKAGE_VERSION},
                  {"container", map_container_name(o.map.container)},
                  {"lobe", lobe_kind_name(o.map.lobe)},
@@ -73,7 +78,7 @@ Json bake_report(const BakeRecord& record) {
                    {"container", map_container_name(o.map.container)},
                    {"filtered_texels", record.map->layout().size()},
                    {"bytes", record.map->bytes()}};
-    if (o.map.lobe == LobeKind::phong) {
+    if (o.map.lobe == LobeKind::phong && o.map.container != MapContainer::harmonics) {
         const RoughnessScale scale = scale_of(o.map);
         json["map"]["roughness_scale"] = {
             {"u", scale.u()}, {"levels", scale.levels()}, {"cube_size", scale.cube_size()}};

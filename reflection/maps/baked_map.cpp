@@ -1,6 +1,7 @@
 #include "reflection/maps/baked_map.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "reflection/maps/baked_harmonics.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
 #include "reflection/maps/prefiltered_cube.h"
@@ -207,6 +208,8 @@ std::string_view map_container_name(MapContainer container) {
         return "cube";
     case MapContainer::cube_map:
         return "cube map";
+    case MapContainer::harmonics:
+        return "harmonics";
     }
     return "";
 }
@@ -238,6 +241,8 @@ std::unique_ptr<BakedMap> make_map(const MapSettings& settings) {
         return std::make_unique<Voxels>(settings);
     case MapContainer::cube_map:
         return std::make_unique<CubeMap>(settings);
+    case MapContainer::harmonics:
+        return make_baked_harmonics(settings.harmonics);
     case MapContainer::shells:
         break;
     }

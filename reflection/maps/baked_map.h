@@ -1,5 +1,7 @@
 #pragma once
-// What is baked into and written to a file: shells, the voxel cube or a prefiltered cube map, alike to who bakes them.
+// What is baked into and written to a file: shells, the voxel cube, a prefiltered cube map or spherical harmonics,
+// alike to who bakes them.
+#include "reflection/maps/harmonics.h"
 #include "reflection/maps/make_baker.h"
 #include "reflection/maps/roughness_scale.h"
 #include "reflection/maps/shell_map.h"
@@ -17,8 +19,9 @@ enum class MapContainer {
     shells,     ///< shell_map.h, as .exr (default)
     voxel_cube, ///< voxel_cube.h, as .exr
     cube_map,   ///< prefiltered_cube.h, as .ktx2 or .dds
+    harmonics,  ///< harmonics.h, as .json; nothing is filtered, and no baker needed
 };
-std::string_view map_container_name(MapContainer container); ///< "shells", "cube", "cube map"
+std::string_view map_container_name(MapContainer container); ///< "shells", "cube", "cube map", "harmonics"
 
 /// A part of the roughness scale, in smoothness λ of [R] (roughness_scale.h), 0 <= roughest <= smoothest <= 1.
 struct SmoothnessRange {
@@ -48,6 +51,7 @@ struct MapSettings {
     std::optional<SmoothnessRange> smoothness{};
     /// Where the cube's voxels stand, and how `smoothness` is read. Phong alone has another than `solved`.
     ScaleRule scale = ScaleRule::solved;
+    HarmonicsSettings harmonics{};
 };
 
 /// The scale that `smoothness` is read by: of the cube's own size, else of 128, the paper's. Files of cubes keep it,
@@ -57,7 +61,7 @@ RoughnessScale scale_of(const MapSettings& settings);
 class BakedMap {
   public:
     virtual ~BakedMap() = default;
-    /// What a baker has to be made for; may be empty (a cube map of the image alone).
+    /// What a baker has to be made for; may be empty (a cube map of the image alone, harmonics).
     virtual const TexelLayout& layout() const = 0;
     virtual std::uint64_t bytes() const = 0; ///< of all texels in their format
     /// Fills the texels. `baker` was made for layout(); null if that is empty.

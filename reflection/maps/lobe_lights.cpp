@@ -1,6 +1,7 @@
 #include "reflection/maps/lobe_lights.h"
 #include "common/directions/legendre.h"
 #include "common/directions/lobes.h"
+#include "common/environment/light_harmonics.h"
 #include "common/services/parallel.h"
 #include "reflection/maps/light_tree.h"
 #include "reflection/maps/lobe_sums.h"
@@ -25,8 +26,7 @@ std::vector<PointOfLight> points_of_disc(const DistantLight& light, double least
     const glm::dvec3 axis = glm::normalize(glm::dvec3(light.direction));
     if (!(half_angle > 0))
         return {{glm::vec3(axis), light.irradiance}};
-    // irradiance = radiance x pi sin^2 (beyond a right angle, pi); what lobes take is radiance x solid angle.
-    const double ratio = half_angle <= kPiDouble / 2 ? 2 / (2 - height) : 2 * height;
+    const double flux = flux_per_irradiance(half_angle); // what lobes take
     const int rings = std::clamp(2 + int(std::ceil(1.5 * half_angle / std::sqrt(least_spread))), 2, 64),
               around = 4 * rings;
     const glm::dvec3 u =
@@ -39,7 +39,7 @@ std::vector<PointOfLight> points_of_disc(const DistantLight& light, double least
         for (int i = 0; i < around; ++i) {
             const double turn = 2 * kPiDouble * (i + 0.5 * double(ring % 2)) / around;
             points.push_back({glm::vec3((1 - w) * axis + sine * (std::cos(turn) * u + std::sin(turn) * v)),
-                              light.irradiance * float(0.5 * rule[ring].weight / around * ratio)});
+                              light.irradiance * float(0.5 * rule[ring].weight / around * flux)});
         }
     }
     return points;

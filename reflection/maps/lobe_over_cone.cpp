@@ -1,6 +1,7 @@
 #include "reflection/maps/lobe_over_cone.h"
 
 #include "common/directions/legendre.h"
+#include "common/environment/light_harmonics.h"
 
 #include <algorithm>
 #include <cmath>
@@ -90,11 +91,7 @@ double mean_over_cone(const Lobe& lobe, const glm::dvec3& axis, const glm::dvec3
 
 glm::dvec3 light_through_lobe(const DistantLight& light, const Lobe& lobe, const glm::dvec3& direction) {
     if (light.texels.empty()) {
-        // Irradiance of a disc of radiance L: L pi sin² (beyond a right angle L pi); its radiance times its solid
-        // angle is 1/cos²(a/2) of that (beyond a right angle 4 sin²(a/2)).
-        const double half_cosine = std::cos(0.5 * double(light.half_angle)), squared = half_cosine * half_cosine;
-        const double ratio = double(light.half_angle) <= kPiDouble / 2 ? 1 / squared : 4 * (1 - squared);
-        return glm::dvec3(light.irradiance) * ratio *
+        return glm::dvec3(light.irradiance) * flux_per_irradiance(double(light.half_angle)) *
                mean_over_cone(lobe, glm::normalize(glm::dvec3(light.direction)), direction, double(light.half_angle));
     }
     glm::dvec3 sum(0.0);

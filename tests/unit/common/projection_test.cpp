@@ -1,5 +1,7 @@
+#include "common/directions/legendre.h"
 #include "common/directions/lobes.h"
 #include "common/directions/projection.h"
+#include "common/directions/ring_transform.h"
 #include "common/directions/rotation.h"
 #include "common/directions/sphere_sets.h"
 #include "common/directions/zonal.h"
@@ -8,6 +10,7 @@
 #include "common/services/random.h"
 #include "tests/unit/common/random_image.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 #include <gtest/gtest.h>
@@ -160,6 +163,77 @@ TEST(ProjectLatLong, ExtremeRadianceStaysFinite) {
             ASSERT_TRUE(std::isfinite(c.x) && std::isfinite(c.y) && std::isfinite(c.z));
     }
     EXPECT_THROW(project_lat_long(Image(), 3), std::invalid_argument);
+}
+
+/// c_lm of ring_transform.h as real coefficients in world axes: taken at (x, z, y), real part of m, -imaginary of -m.
+std::vector<glm::dvec3> ring_coefficients(const Image& image, int bands) {
+    RingCoefficients coefficients(bands);
+    RingAnalysis(image.width, image.height, bands).transform(image, 1, coefficients);
+    std::vector<glm::dvec3> swapped(sh_count(bands), glm::dvec3(0.0));
+    for (int l = 0; l < bands; ++l)
+        for (int m = 0; m <= l; ++m) {
+            const int parity = (l - m) % 2, i = (l - m) / 2, padded = coefficients.padded(m, parity);
+            for (int channel = 0; channel < 3; ++channel) {
+                const float* values = coefficients.values(m, parity) + channel * padded + i;
+                const auto c = glm::length_t(channel);
+                swapped[sh_index(l, m)][c] = double(values[0]);
+                if (m > 0)
+                    swapped[sh_index(l, -m)][c] = -double(values[3 * padded]);
+            }
+        }
+    return swapped;
+}
+
+/// The slow way from those axes to the world's: f(x, y, z) = g(x, z, y), projected at many directions.
+std::vector<glm::dvec3> with_y_and_z_swapped(const std::vector<glm::dvec3>& coefficients, int bands) {
+    const std::size_t count = sh_count(bands);
+    std::vector<glm::dvec3> result(count, glm::dvec3(0.0));
+    std::vector<double> here(count), there(count);
+    // Gauss-Legendre x even azimuths: exact for products of so many bands.
+    const int around = 2 * bands + 1;
+    for (const QuadratureNode& node : gauss_legendre(bands + 1))
+        for (int k = 0; k < around; ++k) {
+            const double azimuth = 2 * kPiDouble * k / around, sine = std::sqrt(1 - node.x * node.x);
+            const glm::dvec3 d(sine * std::cos(azimuth), sine * std::sin(azimuth), node.x);
+            evaluate_sh(bands, d, here);
+            evaluate_sh(bands, glm::dvec3(d.x, d.z, d.y), there);
+            glm::dvec3 value(0.0);
+            for (std::size_t i = 0; i < count; ++i)
+                value += there[i] * coefficients[i];
+            for (std::size_t i = 0; i < count; ++i)
+                result[i] += node.weight * 2 * kPiDouble / around * here[i] * value;
+        }
+    return result;
+}
+
+/// Each pixel as k x k pixels of the same colour.
+Image split_pixels(const Image& image, int k) {
+    Image result(k * image.width, k * image.height, 3);
+    for (int y = 0; y < result.height; ++y)
+        for (int x = 0; x < result.width; ++x)
+            std::copy_n(image.at(x / k, y / k), 3, result.at(x, y));
+    return result;
+}
+
+// The two ways from an image to harmonics: pixels integrated, in double (this one), and pixels as points at their
+// centres, in float, for hundreds of bands in milliseconds (ring_transform.h). Where pixels are split into smaller ones
+// of the same colour the second nears the first, by the square of their size.
+TEST(ProjectLatLong, IsWhatTheRingTransformNearsAsPixelsAreSplit) {
+    const int bands = 9;
+    const Image image = random_image(12, 6, 3);
+    const auto integrated = project_lat_long(image, bands);
+    const auto difference = [&](int k) {
+        const auto at_centres = with_y_and_z_swapped(ring_coefficients(split_pixels(image, k), bands), bands);
+        double largest = 0;
+        for (std::size_t i = 0; i < integrated.size(); ++i)
+            largest = std::max(largest, glm::distance(at_centres[i], glm::dvec3(integrated[i])));
+        return largest;
+    };
+    const double coarse = difference(1), fine = difference(4), finer = difference(16), finest = difference(64);
+    EXPECT_GT(coarse, 0.02);
+    EXPECT_LT(fine, 0.1 * coarse);
+    EXPECT_LT(finer, 0.1 * fine);
+    EXPECT_LT(finest, 1e-4);
 }
 
 struct Samples {

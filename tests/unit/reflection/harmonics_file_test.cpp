@@ -11,39 +11,66 @@
 namespace kokage {
 namespace {
 
-TEST(HarmonicsFile, CoefficientsComeBackBitByBit) {
-    const TemporaryFolder folder;
+Harmonics some_harmonics(std::size_t count) {
     Random random(2);
-    std::vector<glm::vec3> coefficients(49);
-    for (glm::vec3& c : coefficients)
+    Harmonics harmonics;
+    harmonics.quantity = HarmonicQuantity::irradiance;
+    harmonics.coefficients.resize(count);
+    for (glm::vec3& c : harmonics.coefficients)
         c = {random.uniform(-1, 1), std::exp(random.uniform(-30, 30)), 0};
-    write_harmonics(folder / "sh.json", coefficients, "a \"sky\"");
-    EXPECT_EQ(read_harmonics(folder / "sh.json"), coefficients);
+    harmonics.lights.push_back({"the \"sun\"", glm::normalize(glm::vec3(1, 2, 3)), 0.00465f, {3e4f, 1e-7f, 0}});
+    return harmonics;
+}
+
+TEST(HarmonicsFile, EverythingComesBackBitByBit) {
+    const TemporaryFolder folder;
+    const Harmonics written = some_harmonics(49);
+    write_harmonics(folder / "sh.json", written, "a \"sky\"");
+    const HarmonicsFile read = read_harmonics(folder / "sh.json");
+    EXPECT_EQ(read.made_from, "a \"sky\"");
+    EXPECT_EQ(read.harmonics.quantity, HarmonicQuantity::irradiance);
+    EXPECT_EQ(read.harmonics.coefficients, written.coefficients);
+    ASSERT_EQ(read.harmonics.lights.size(), 1u);
+    EXPECT_EQ(read.harmonics.lights[0].name, "the \"sun\"");
+    EXPECT_EQ(read.harmonics.lights[0].direction, written.lights[0].direction);
+    EXPECT_EQ(read.harmonics.lights[0].half_angle, written.lights[0].half_angle);
+    EXPECT_EQ(read.harmonics.lights[0].irradiance, written.lights[0].irradiance);
 }
 
 TEST(HarmonicsFile, WhatIsWrongIsRefused) {
     const TemporaryFolder folder;
-    const std::vector<glm::vec3> coefficients(9, glm::vec3(0.25f));
-    write_harmonics(folder / "sh.json", coefficients);
+    Harmonics harmonics = some_harmonics(9);
+    harmonics.coefficients.assign(9, glm::vec3(0.25f));
+    write_harmonics(folder / "sh.json", harmonics);
     const std::string whole = read_text(folder / "sh.json");
     const auto with = [&](const std::string& text) {
         std::ofstream(folder / "bad.json") << text;
         return folder / "bad.json";
     };
-    const auto replaced = [&](const std::string& from, const std::string& to) {
-        std::string text = whole;
-        text.replace(text.find(from), from.size(), to);
-        return with(text);
-    };
     for (std::size_t i = 0; i < 20; ++i)
         EXPECT_THROW(read_harmonics(with(whole.substr(0, (whole.size() - 2) * i / 20))), InputError);
-    EXPECT_THROW(read_harmonics(replaced("\"version\": 1", "\"version\": 2")), InputError);
-    EXPECT_THROW(read_harmonics(replaced("\"bands\": 3", "\"bands\": 4")), InputError);
-    EXPECT_THROW(read_harmonics(replaced("0.25", "\"a\"")), InputError);
-    EXPECT_THROW(read_harmonics(replaced("index l(l+1)+m", "index l")), InputError);
+    const std::pair<const char*, const char*> changes[] = {{"\"version\": 2", "\"version\": 1"},
+                                                           {"\"bands\": 3", "\"bands\": 4"},
+                                                           {"\"bands\": 3", "\"bands\": 3e9"},
+                                                           {"\"bands\": 3", "\"bands\": -3"},
+                                                           {"0.25", "\"a\""},
+                                                           {"0.25", "1e99"},
+                                                           {"index l(l+1)+m", "index l"},
+                                                           {"\"irradiance\"", "\"light\""},
+                                                           {"\"half_angle\"", "\"angle\""},
+                                                           {"0.26726", "1.26726"},
+                                                           {"\"lights\"", "\"lamps\""},
+                                                           {"\"name\": \"the", "\"name\": 3, \"x\": \"the"}};
+    for (const auto& [from, to] : changes) {
+        std::string text = whole;
+        ASSERT_NE(text.find(from), std::string::npos) << from;
+        text.replace(text.find(from), std::string(from).size(), to);
+        EXPECT_THROW(read_harmonics(with(text)), InputError) << from << " " << to;
+    }
     EXPECT_THROW(read_harmonics(folder / "none.json"), InputError);
-    const float nan = std::numeric_limits<float>::quiet_NaN();
-    EXPECT_THROW(write_harmonics(folder / "nan.json", std::vector{glm::vec3(nan)}), InputError);
+    harmonics.coefficients[3].y = std::numeric_limits<float>::quiet_NaN();
+    EXPECT_THROW(write_harmonics(folder / "nan.json", harmonics), InputError);
+    EXPECT_FALSE(std::filesystem::exists(folder / "nan.json"));
 }
 
 } // namespace

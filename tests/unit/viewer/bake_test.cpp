@@ -1,6 +1,7 @@
 // `kokage bake` as a user runs it, on small images and coarse maps.
 #include "common/scene/image_file.h"
 #include "reflection/maps/cube_file.h"
+#include "reflection/maps/harmonics_file.h"
 #include "reflection/maps/map_file.h"
 #include "tests/support/program_run.h"
 
@@ -106,6 +107,25 @@ TEST(Bake, TakesSkyConstantAndLights) {
               2 * sky.lookup(glm::normalize(glm::vec3(-1, 0.57f, 0)), 20).x)
         << "the sun stands in the east";
     EXPECT_NEAR(std::get<ShellMap>(read_map(folder / "b.exr").map).lookup({0, 1, 0}, 5).y, 0.5f, 1e-3f);
+}
+
+TEST(Bake, WritesSphericalHarmonics) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const ProgramRun run = run_kokage({"bake", "in.exr", "--light", "sun:0,45,3,2,1", "--bands", "2", "--quantity",
+                                       "irradiance", "--list-lights", "-o", "h.json", "--report", "r.json"},
+                                      folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("irradiance, 2 bands"), std::string::npos) << run.output;
+    const HarmonicsFile file = read_harmonics(folder / "h.json");
+    EXPECT_NE(file.made_from.find("32 x 16"), std::string::npos);
+    EXPECT_EQ(file.harmonics.bands(), 2);
+    ASSERT_EQ(file.harmonics.lights.size(), 1u);
+    EXPECT_EQ(file.harmonics.lights[0].irradiance, glm::vec3(3, 2, 1));
+    const glm::vec3 up = file.harmonics.value({0, 1, 0}), down = file.harmonics.value({0, -1, 0});
+    EXPECT_NEAR(up.y - 2 * std::sqrt(0.5f), 1.2f, 0.15f) << "a gradient of 0.2 to 0.8, brighter below, and the light";
+    EXPECT_NEAR(up.y - 2 * std::sqrt(0.5f) + down.y, 2 * kPi * (0.2f + 0.6f * 8.5f / 18), 1e-3f) << "2 pi x the mean";
+    EXPECT_EQ(Json::parse(read_text(folder / "r.json"))["settings"]["bands"], 2);
 }
 
 TEST(Bake, AStoredSetupIsMadeOnceAndMapsStayTheSame) {
@@ -218,6 +238,10 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
         {{"in.exr", "--roughness-scale", "paper", "-o", "m.exr"}, "--container cube"},
         {{"in.exr", "--roughness-scale", "paper", "--lobe", "ggx", "--container", "cube", "-o", "m.exr"},
          "--lobe phong"},
+        {{"in.exr", "--bands", "3", "-o", "m.exr"}, "write a .json"},
+        {{"in.exr", "--size", "64", "-o", "m.json"}, "maps of texels"},
+        {{"in.exr", "--bands", "600", "-o", "m.json"}, "from 1 to 512"},
+        {{"in.exr", "--quantity", "light", "-o", "m.json"}, "radiance, irradiance"},
         {{"in.exr", "--tolerance", "1e-9", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "nan", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "0.01", "--method", "table", "-o", "m.exr"}, "can't aim at an error"},
