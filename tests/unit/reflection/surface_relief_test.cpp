@@ -206,7 +206,7 @@ TEST_P(OnTubes, ShadowsAreThoseOfTheDisplacedMesh) {
     for (const SurfaceHit& hit : traced.hits(view))
         if (hit.found())
             hits.push_back(hit);
-    const glm::vec3 to_light = glm::normalize(glm::vec3(-0.4f, 0.7f, 0.75f));
+    const glm::vec3 to_light = glm::normalize(glm::vec3(0.7f, 0.5f, 0.5f));
     const std::vector<glm::vec3> lights(hits.size(), to_light);
     std::vector<std::uint8_t> hidden(hits.size());
     std::vector<float> ways_out(hits.size());
@@ -216,16 +216,22 @@ TEST_P(OnTubes, ShadowsAreThoseOfTheDisplacedMesh) {
         // Where the light grazes, or the relief itself turns away, a mesh of flat triangles says anything.
         if (std::abs(glm::dot(hits[i].geometric_normal, to_light)) < 0.1f)
             continue;
-        const glm::vec3 from = hits[i].position + 3e-4f * hits[i].geometric_normal;
-        const bool is_dark = queries.occluded(from, to_light, 0, 0.1f); // not what lies beyond the shell
-        if (!hidden[i] && ways_out[i] < 0.1f && is_dark && !queries.occluded(from, to_light, 0, ways_out[i]))
+        // Within the shell: what lies beyond may shade it too.
+        const float reach = hidden[i] ? 0.1f : std::min(ways_out[i], 0.1f);
+        const auto is_dark_from = [&](float lift) {
+            return queries.occluded(hits[i].position + lift * hits[i].geometric_normal, to_light, 0, reach);
+        };
+        // What turns away from the light is dark, though rays that start above it may pass its edge.
+        const bool turns_away = glm::dot(hits[i].geometric_normal, to_light) < 0,
+                   is_dark = turns_away || is_dark_from(1e-4f);
+        if (!turns_away && is_dark != is_dark_from(6e-4f)) // a shadow's edge
             continue;
         ++counted;
         dark += is_dark;
         wrong += is_dark != (hidden[i] != 0);
     }
     EXPECT_GT(dark, counted / 20);
-    EXPECT_LE(wrong, counted / 100) << "of " << counted;
+    EXPECT_LE(wrong, counted / 500) << "of " << counted;
     record("wrong", wrong, counted);
 }
 
