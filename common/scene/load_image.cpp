@@ -1,3 +1,4 @@
+#include "common/scene/exr_header.h"
 #include "common/scene/image_file.h"
 #include "common/scene/image_io.h"
 #include "common/scene/png_file.h"
@@ -207,6 +208,8 @@ bool is_png(const std::filesystem::path& path) {
 }
 
 Input open(const std::filesystem::path& path) {
+    if (const std::string problem = exr_header_problem(path); !problem.empty())
+        fail_to_read(path.string(), "it is damaged: " + problem + kMending);
     use_our_thread_count();
     const OIIO::ImageSpec config = straight_alpha_request();
     Input input = OIIO::ImageInput::open(path.string(), &config);
@@ -267,6 +270,8 @@ Image load_image(std::span<const std::byte> bytes, const std::string& name, cons
         fail_to_read(name, "its first bytes are of no known format (PNG, JPEG, WebP, EXR, HDR, TIFF, BMP, GIF, DDS)");
     if (format == "png")
         return read_png(bytes, name, loading);
+    if (const std::string problem = exr_header_problem(bytes); !problem.empty())
+        fail_to_read(name, "it is damaged: " + problem + kMending);
     use_our_thread_count();
     OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
     OIIO::ImageSpec config = straight_alpha_request();

@@ -1,5 +1,6 @@
 #include "reflection/maps/exr_notes.h"
 
+#include "common/scene/exr_header.h"
 #include "common/scene/image_io.h"
 #include "common/services/byte_hash.h"
 #include "common/services/error.h"
@@ -43,6 +44,8 @@ std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
         fail_to_read(path, "there is no such file");
     if (!std::filesystem::is_regular_file(path, error))
         fail_to_read(path, "it is no file");
+    if (const std::string problem = exr_header_problem(path); !problem.empty())
+        fail_to_read(path, "it is damaged: " + problem + "; bake it again");
     use_our_thread_count();
     auto input = OIIO::ImageInput::create("exr");
     OIIO::ImageSpec spec;
@@ -80,6 +83,12 @@ ExrHeader read_exr_header(const std::filesystem::path& path) {
     if (spec.deep || spec.depth > 1 || spec.nchannels != 3 || spec.width < 1 || spec.height < 1 || spec.x != 0 ||
         spec.y != 0)
         fail_to_read(path, "it is no plain picture of three channels, as maps are");
+    // Deflate packs at most 1032 bytes into one (zlib's manual), and a channel has 2 bytes a pixel or more: a header
+    // that announces more is damaged.
+    std::error_code error;
+    const std::uint64_t pixels = std::uint64_t(spec.width) * std::uint64_t(spec.height);
+    if (pixels * 3 * 2 > 1032 * (std::uint64_t(std::filesystem::file_size(path, error)) + 64))
+        fail_to_read(path, "it is cut off: its header announces more pixels than its bytes can hold");
     ExrHeader header{spec.width, spec.height, {}};
     for (const OIIO::ParamValue& attribute : spec.extra_attribs) {
         const std::string name = attribute.name().string();
@@ -90,11 +99,6 @@ ExrHeader read_exr_header(const std::filesystem::path& path) {
 }
 
 Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header) {
-    // Deflate packs at most 1032 bytes into one (zlib's manual): a header that announces more is damaged.
-    std::error_code error;
-    const std::uint64_t pixels = std::uint64_t(header.width) * std::uint64_t(header.height);
-    if (pixels * 3 * 2 > 1032 * (std::uint64_t(std::filesystem::file_size(path, error)) + 64))
-        fail_to_read(path, "it is cut off: its header announces more pixels than its bytes can hold");
     const auto input = open(path);
     Image image(header.width, header.height, 3);
     if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, image.pixels.data()))

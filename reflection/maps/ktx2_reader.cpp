@@ -164,23 +164,32 @@ class Ktx2Reader {
             fail("it has " + std::to_string(bytes_.size() - expected) + " bytes after its last level; it is damaged");
     }
 
+    std::string value_of(const char* key) const {
+        const auto found = key_values_.find(key);
+        return found == key_values_.end() ? std::string() : found->second;
+    }
+
     void describe_lobes(CubeFile& file) const {
-        const auto value_of = [&](const char* key) {
-            const auto found = key_values_.find(key);
-            return found == key_values_.end() ? std::string() : found->second;
-        };
-        file.writer = without_controls(value_of("KTXwriter")).substr(0, 100);
         const std::string lobe = value_of("kokage.lobe"), parameters = value_of("kokage.parameters");
-        if (!key_values_.contains("kokage.lobe") && !key_values_.contains("kokage.parameters"))
-            return;
+        file.writer = without_controls(value_of("KTXwriter")).substr(0, 100);
+        file.lobes_known = key_values_.contains("kokage.lobe") || key_values_.contains("kokage.parameters");
+        if (file.lobes_known)
+            read_lobes(lobe, parameters, file.cube);
+        if (key_values_.contains("kokage.checksum") &&
+            value_of("kokage.checksum") != ktx2::checksum_text(lobe, parameters, bytes_.subspan(offsets_.back())))
+            fail("its texels or notes are not those that were written (kokage.checksum differs); it is damaged, or "
+                 "another program changed it and kept that key");
+    }
+
+    void read_lobes(const std::string& lobe, const std::string& parameters, PrefilteredCube& cube) const {
         try {
-            file.cube.kind = lobe_kind_from_name(lobe);
+            cube.kind = lobe_kind_from_name(lobe);
             std::size_t at = 0;
-            for (PrefilteredCube::Level& level : file.cube.levels) {
+            for (PrefilteredCube::Level& level : cube.levels) {
                 const std::size_t end = std::min(parameters.find(' ', at), parameters.size());
                 if (at > parameters.size())
                     throw std::invalid_argument("");
-                set_parameter(level, file.cube.kind, std::string_view(parameters).substr(at, end - at));
+                set_parameter(level, cube.kind, std::string_view(parameters).substr(at, end - at));
                 at = end + 1;
             }
             if (at <= parameters.size())
@@ -189,12 +198,6 @@ class Ktx2Reader {
             fail("its notes on the levels' lobes (kokage.lobe, kokage.parameters) do not fit its " +
                  std::to_string(levels_) + " levels; they are damaged");
         }
-        file.lobes_known = true;
-        const std::string sum = value_of("kokage.checksum");
-        if (key_values_.contains("kokage.checksum") &&
-            sum != ktx2::checksum_text(lobe, parameters, bytes_.subspan(offsets_.back())))
-            fail("its texels are not those that were written (kokage.checksum differs); it is damaged, or another "
-                 "program changed it and kept that key");
     }
 
     std::string name_;

@@ -7,7 +7,9 @@
 #include "reflection/maps/texel_prefilter.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 #include <string>
 
 namespace kokage {
@@ -16,7 +18,11 @@ namespace {
 constexpr int kLeastResolution = 16, kMostResolution = 8192, kMostShells = int(ShellTable::most_shells);
 
 void check(const ShellSettings& s) {
-    const auto number = [](double value) { return std::to_string(value); };
+    const auto number = [](double value) {
+        std::array<char, 32> text{};
+        std::snprintf(text.data(), text.size(), "%g", value);
+        return std::string(text.data());
+    };
     const bool phong = s.kind == LobeKind::phong;
     const double least = phong ? 0 : 0.01, most = phong ? 1e6 : 1;
     if (!(s.least_parameter >= least && s.least_parameter <= s.most_parameter && s.most_parameter <= most))

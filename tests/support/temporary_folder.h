@@ -14,8 +14,8 @@ namespace kokage {
 /// A new folder, removed with all in it when the test ends.
 class TemporaryFolder {
   public:
-    TemporaryFolder() {
-        std::string name = (std::filesystem::temp_directory_path() / "kokage-test-XXXXXX").string();
+    explicit TemporaryFolder(const std::filesystem::path& parent = std::filesystem::temp_directory_path()) {
+        std::string name = (parent / "kokage-test-XXXXXX").string();
         if (!mkdtemp(name.data()))
             throw std::runtime_error("no temporary folder can be made at " + name);
         path_ = name;
@@ -40,6 +40,12 @@ class TemporaryFolder {
   private:
     std::filesystem::path path_;
 };
+
+/// Where files are written without a disk, if there is such a place: for tests that write thousands.
+inline std::filesystem::path parent_in_memory() {
+    const std::filesystem::path shared = "/dev/shm";
+    return ::access(shared.c_str(), W_OK | X_OK) == 0 ? shared : std::filesystem::temp_directory_path();
+}
 
 inline std::string read_text(const std::filesystem::path& path) {
     std::ifstream file(path, std::ios::binary);

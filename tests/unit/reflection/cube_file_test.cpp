@@ -319,6 +319,12 @@ TEST(CubeFile, DamagedKtx2FilesAreRefusedByName) {
         {"orientation", "KTXorientation is 'ru'", [](std::string& b) { b.replace(b.find("rd\0"), 2, "ru"); }},
         {"a texel", "kokage.checksum differs", [](std::string& b) { b[b.size() - 100] ^= 1; }},
         {"a roughness", "kokage.checksum differs", [](std::string& b) { b.replace(b.find("0.134"), 5, "0.234"); }},
+        {"a texel, beside a checksum alone", "kokage.checksum differs",
+         [](std::string& b) {
+             b.replace(b.find("kokage.lobe"), 6, "others");
+             b.replace(b.find("kokage.parameters"), 6, "others");
+             b[b.size() - 100] ^= 1;
+         }},
         {"another's infinite texel", "not finite",
          [](std::string& b) {
              b.replace(b.find("kokage.checksum"), 6, "foreign");
