@@ -49,9 +49,9 @@ class EglContext final : public GlContext {
         return units_++;
     }
 
-    void use(const std::string& source, int targets) override {
+    void use(const std::string& source, int targets, Language language) override {
         targets_ = targets;
-        const std::string version = "#version 330 core\n";
+        const std::string version = language == Language::glsl_330 ? "#version 330 core\n" : "#version 300 es\n";
         program_ = glCreateProgram();
         compile(GL_VERTEX_SHADER, version + "void main() { gl_Position = vec4(gl_VertexID == 1 ? 3.0 : -1.0, "
                                             "gl_VertexID == 2 ? 3.0 : -1.0, 0.0, 1.0); }");

@@ -21,9 +21,10 @@ class GlContext {
     /// Uploads texels, row by row, without filter and mips; the texture is bound to the unit that is returned.
     virtual int texture(Format format, int width, int height, const void* texels) = 0;
 
+    enum class Language { glsl_330, glsl_es_300 };
     /// Compiles a fragment shader (`source`, without #version) whose outputs are `targets` vec4s at locations 0, 1, ...
     /// Throws std::runtime_error with the compiler's words.
-    virtual void use(const std::string& source, int targets) = 0;
+    virtual void use(const std::string& source, int targets, Language language = Language::glsl_330) = 0;
     virtual void set(const char* uniform, int value) = 0;
     virtual void set(const char* uniform, const glm::ivec4& value) = 0;
     virtual void set(const char* uniform, const std::vector<glm::ivec2>& values) = 0;

@@ -1,67 +1,21 @@
-// Our GLSL finds what our own tracers find: relief on a plane, and on a trunk.
+// Our GLSL finds what the truth finds: relief on a plane.
 #include "common/services/random.h"
 #include "reflection/relief/cell_by_cell.h"
-#include "reflection/relief/relief_textures.h"
 #include "tests/benchmark/relief_maps.h"
-#include "tests/support/gl_shader.h"
-#include "tests/unit/reflection/relief_surfaces.h"
+#include "tests/unit/benchmark/relief_shader.h"
 
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
-#include <fstream>
-#include <gtest/gtest.h>
-#include <sstream>
 
 namespace kokage {
 namespace {
 
-using test::GlContext;
+using test::kRaysARow;
+using test::source_of;
 
-constexpr int kSize = 160;
-const float kTexels = 0.5f; ///< hits nearer than this are the same
-
-std::string source_of(const std::string& name) {
-    std::ifstream file(std::string(KOKAGE_TESTS_FOLDER) + "/../reflection/relief/" + name);
-    std::stringstream text;
-    text << file.rdbuf();
-    return text.str();
-}
-
-/// One context a process: Mesa's are slow to come and go.
-class ReliefShader : public testing::Test {
-  protected:
-    void SetUp() override {
-        std::string why;
-        gl_ = GlContext::make(why);
-        if (!gl_)
-            GTEST_SKIP() << "skipped: no OpenGL: " << why;
-    }
-    void set_relief(const HeightField& field, int depths, int planes, const ReliefTextures& textures) const {
-        ASSERT_GT(field.width, 0);
-        gl_->set("reliefDepths", depths);
-        gl_->set("reliefPlanes", planes);
-        gl_->set("reliefSize", textures.size);
-        gl_->set("reliefLevels", std::vector<glm::ivec2>(textures.levels.begin(), textures.levels.end()));
-    }
-    int upload(const DataTexture<float>& t) const {
-        return gl_->texture(GlContext::Format::r32f, t.width, t.height, t.texels.data());
-    }
-    int upload(const DataTexture<std::array<std::uint16_t, 4>>& t) const {
-        return gl_->texture(GlContext::Format::rgba16ui, t.width, t.height, t.texels.data());
-    }
-    int upload(const DataTexture<glm::vec4>& t) const {
-        return gl_->texture(GlContext::Format::rgba32f, t.width, t.height, t.texels.data());
-    }
-    int upload(const DataTexture<glm::uvec4>& t) const {
-        return gl_->texture(GlContext::Format::rgba32ui, t.width, t.height, t.texels.data());
-    }
-    int upload(const std::vector<glm::vec4>& texels) const {
-        return gl_->texture(GlContext::Format::rgba32f, kSize, int(texels.size()) / kSize, texels.data());
-    }
-
-    std::unique_ptr<GlContext> gl_;
-};
+constexpr int kSize = kRaysARow;
+constexpr float kTexels = 0.5f; ///< hits nearer than this are the same
 
 /// Hits of rays on the GPU.
 struct GpuHits {
@@ -81,7 +35,7 @@ void main() {
 }
 )";
 
-class OnPlane : public ReliefShader {
+class OnPlane : public test::ReliefShader {
   protected:
     GpuHits trace(const HeightField& field, const std::vector<ReliefRay>& rays) {
         gl_->use(source_of("relief.glsl") + kPlaneMain, 2);
