@@ -77,12 +77,14 @@ bool stands(const ReliefShell& shell, const Prism& prism) {
 }
 
 /// Shrinks depth where prisms fold, then calls what still does not stand solid.
-void unfold(ReliefShell& shell) {
+void unfold(ReliefShell& shell, const std::vector<bool>& solid_layers) {
     std::vector<bool> shallow(shell.outer.size(), false);
     constexpr int kRounds = 12;
     for (int round = 0; round <= kRounds; ++round) {
         std::vector<bool> shrink(shell.outer.size(), false);
         for (Prism& prism : shell.prisms) {
+            if (solid_layers[prism.layer])
+                continue;
             prism.is_solid = !stands(shell, prism);
             for (std::size_t k = 0; k < 3 && prism.is_solid; ++k)
                 shrink[prism.places[k]] = true;
@@ -149,19 +151,45 @@ Prism sorted_prism(const ReliefMesh& mesh, const WeldedPlaces& places, const glm
     return prism;
 }
 
-void check_depth(const ReliefDepth& depth, std::string_view name) {
+void check_layers(const ReliefLayers& layers, std::size_t triangles, std::string_view name) {
     const auto is_bad = [](float x) { return !(x >= 0) || !std::isfinite(x); };
-    if (is_bad(depth.depth_m) || is_bad(depth.tile_m) || is_bad(depth.most_of_radius) || depth.most_of_radius > 0.5f)
-        throw InputError(std::string(name) + ": relief " + std::to_string(depth.depth_m) + " m deep on tiles of " +
-                         std::to_string(depth.tile_m) + " m, at most " + std::to_string(depth.most_of_radius) +
-                         " of the radius: all must be finite and at least 0, the last at most 0.5");
+    for (const ReliefDepth& depth : layers.depths)
+        if (is_bad(depth.depth_m) || is_bad(depth.tile_m) || is_bad(depth.most_of_radius) ||
+            depth.most_of_radius > 0.5f)
+            throw InputError(std::string(name) + ": relief " + std::to_string(depth.depth_m) + " m deep on tiles of " +
+                             std::to_string(depth.tile_m) + " m, at most " + std::to_string(depth.most_of_radius) +
+                             " of the radius: all must be finite and at least 0, the last at most 0.5");
+    const bool is_complete =
+        layers.of_triangle.empty() ? !layers.depths.empty() : layers.of_triangle.size() == triangles;
+    const auto is_known = [&](std::uint8_t layer) { return layer < layers.depths.size(); };
+    if (!is_complete || !std::all_of(layers.of_triangle.begin(), layers.of_triangle.end(), is_known))
+        throw InputError(std::string(name) + ": each of the " + std::to_string(triangles) +
+                         " triangles must have one of " + std::to_string(layers.depths.size()) + " layers of relief");
+}
+
+/// How deep each place's shell shall be.
+std::vector<float> place_depths(const ReliefMesh& mesh, const ReliefShell& shell, const WeldedPlaces& places,
+                                const ReliefLayers& layers, const std::vector<glm::vec3>& normals) {
+    const std::vector<float> radii = convex_radii(shell, normals), tiles = tile_sizes(mesh, places);
+    std::vector<float> depths(places.count, std::numeric_limits<float>::infinity());
+    for (const Prism& prism : shell.prisms) {
+        const ReliefDepth& depth = layers.depths[prism.layer];
+        for (std::size_t k = 0; k < 3 && depth.depth_m > 0; ++k) {
+            const std::uint32_t i = prism.places[k];
+            const float narrow = depth.tile_m > 0 && tiles[i] > 0 ? std::min(1.f, tiles[i] / depth.tile_m) : 1.f;
+            depths[i] = std::min({depths[i], depth.depth_m * narrow, depth.most_of_radius * radii[i]});
+        }
+    }
+    for (float& depth : depths)
+        depth = std::isfinite(depth) ? depth : 0;
+    return depths;
 }
 
 } // namespace
 
-ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefDepth& depth, std::string_view name) {
+ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefLayers& layers, std::string_view name) {
     check_relief_mesh(mesh, name);
-    check_depth(depth, name);
+    check_layers(layers, mesh.triangles.size(), name);
     if (mesh.triangles.size() >= ReliefShell::kBorder >> 2)
         throw InputError(std::string(name) + ": " + std::to_string(mesh.triangles.size()) +
                          " triangles are too many for relief");
@@ -170,23 +198,26 @@ ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefDepth& depth, 
     shell.outer.resize(places.count);
     for (std::size_t i = 0; i < mesh.positions.size(); ++i)
         shell.outer[places.place_of_vertex[i]] = mesh.positions[i];
-    for (const glm::uvec3& triangle : mesh.triangles)
-        shell.prisms.push_back(sorted_prism(mesh, places, triangle));
+    std::vector<bool> solid_layers;
+    for (const ReliefDepth& depth : layers.depths)
+        solid_layers.push_back(!(depth.depth_m > 0));
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+        Prism prism = sorted_prism(mesh, places, mesh.triangles[t]);
+        prism.layer = layers.of_triangle.empty() ? std::uint8_t(0) : layers.of_triangle[t];
+        prism.is_solid = solid_layers[prism.layer];
+        shell.prisms.push_back(prism);
+    }
     find_neighbors(shell);
     const std::vector<glm::vec3> normals = place_normals(mesh, places);
-    const std::vector<float> radii = convex_radii(shell, normals), tiles = tile_sizes(mesh, places);
-    shell.inner.resize(places.count);
-    for (std::size_t i = 0; i < places.count; ++i) {
-        const float narrow = depth.tile_m > 0 && tiles[i] > 0 ? std::min(1.f, tiles[i] / depth.tile_m) : 1.f;
-        shell.inner[i] =
-            shell.outer[i] - std::min(depth.depth_m * narrow, depth.most_of_radius * radii[i]) * normals[i];
-    }
-    if (depth.depth_m > 0)
-        unfold(shell);
-    else
-        for (Prism& prism : shell.prisms)
-            prism.is_solid = true;
+    const std::vector<float> depths = place_depths(mesh, shell, places, layers, normals);
+    for (std::size_t i = 0; i < places.count; ++i)
+        shell.inner.push_back(shell.outer[i] - depths[i] * normals[i]);
+    unfold(shell, solid_layers);
     return shell;
+}
+
+ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefDepth& depth, std::string_view name) {
+    return make_relief_shell(mesh, ReliefLayers{{depth}, {}}, name);
 }
 
 float ReliefShell::thickness_m(const Prism& prism, const glm::vec3& weights) const {

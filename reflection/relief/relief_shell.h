@@ -29,13 +29,21 @@ struct ReliefDepth {
     float most_of_radius = 0.25f; ///< relief is no deeper than this share of the radius of what is convex (0 .. 0.5)
 };
 
+/// Bark of one tree may have several reliefs (layers), a coarse one at the foot and fine ones above: the shell is
+/// common to all, so that rays go from one to the next. A layer of depth 0 has no relief: its triangles are solid.
+struct ReliefLayers {
+    std::vector<ReliefDepth> depths;
+    std::vector<std::uint8_t> of_triangle; ///< index in depths; empty: all are of the first
+};
+
 struct ReliefShell {
     /// A prism. Its own corners k = 0, 1, 2 are the triangle's in ascending order of their places.
     struct Prism {
         glm::uvec3 places{0};
         std::array<glm::vec2, 3> uvs{};
         std::array<std::uint8_t, 3> corners{}; ///< which corner of the triangle k is
-        bool is_solid = false;                 ///< has no room for relief: rays end at it
+        std::uint8_t layer = 0;
+        bool is_solid = false; ///< has no room for relief: rays end at it
         /// Across the sides over corners 01, 02, 12: prism << 2 | its side there (0, 1, 2 for 01, 02, 12); or kBorder.
         std::array<std::uint32_t, 3> neighbors{};
     };
@@ -49,8 +57,10 @@ struct ReliefShell {
     std::size_t bytes() const;
 };
 
-/// Checks the mesh (check_relief_mesh). Throws InputError where `depth` is negative or not finite.
-/// Triangles without area are left out of the neighbourhoods where two of their corners are one place, and solid else.
+/// Checks the mesh (check_relief_mesh). Throws InputError where a depth is negative or not finite. Where layers meet,
+/// the shallower one's depth holds (a solid one's does not count). Triangles without area are left out of the
+/// neighbourhoods where two of their corners are one place, and solid else.
+ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefLayers& layers, std::string_view name);
 ReliefShell make_relief_shell(const ReliefMesh& mesh, const ReliefDepth& depth, std::string_view name);
 
 /// The place of depth `depth` under the point of a prism that has `weights` of its own corners.

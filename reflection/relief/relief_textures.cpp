@@ -46,7 +46,7 @@ ReliefTextures make_relief_textures(const HeightField& field) {
     return textures;
 }
 
-SurfaceTextures make_surface_textures(const ReliefShell& shell, const TangentFrames& frames) {
+SurfaceTextures make_surface_textures(const ReliefShell& shell, const TangentFrames& frames, int layer) {
     SurfaceTextures textures;
     std::vector<glm::vec4> places, frame_texels;
     for (std::size_t i = 0; i < shell.outer.size(); ++i) {
@@ -63,7 +63,7 @@ SurfaceTextures make_surface_textures(const ReliefShell& shell, const TangentFra
         const bool odd = (p.corners[1] + 3 - p.corners[0]) % 3 != 1;
         const glm::vec2 tile = glm::floor(p.uvs[0]); // so that single precision has its digits for the rest
         const std::array uvs{p.uvs[0] - tile, p.uvs[1] - tile, p.uvs[2] - tile};
-        prisms.emplace_back(p.places, (p.is_solid ? 1u : 0u) | (odd ? 2u : 0u));
+        prisms.emplace_back(p.places, (p.is_solid || int(p.layer) != layer ? 1u : 0u) | (odd ? 2u : 0u));
         prisms.emplace_back(p.neighbors[0], p.neighbors[1], p.neighbors[2], 0u);
         prisms.emplace_back(bits(uvs[0].x), bits(uvs[0].y), bits(uvs[1].x), bits(uvs[1].y));
         prisms.emplace_back(bits(uvs[2].x), bits(uvs[2].y), bits(tile.x), bits(tile.y));

@@ -35,6 +35,7 @@ struct SurfaceTextures {
     DataTexture<glm::uvec4> prisms; ///< GL_RGBA32UI; five texels a prism, see surface_relief.glsl
 };
 /// Throws InputError for a mesh of more places or triangles than textures of 16384 x 16384 texels can hold.
-SurfaceTextures make_surface_textures(const ReliefShell& shell, const TangentFrames& frames);
+/// The shader knows one relief: `layer`'s; triangles of other layers are solid to it.
+SurfaceTextures make_surface_textures(const ReliefShell& shell, const TangentFrames& frames, int layer = 0);
 
 } // namespace kokage

@@ -3,6 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
+#include <string>
+#include <utility>
 
 namespace kokage {
 
@@ -75,9 +78,16 @@ float relief_strength(float pixels) {
     return x * x * (3 - 2 * x);
 }
 
-SurfaceRelief::SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames, const ReliefTracer& tracer,
-                             float least_depth)
-    : shell_(shell), frames_(frames), tracer_(tracer), least_depth_(least_depth) {}
+SurfaceRelief::SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames,
+                             std::vector<SurfaceReliefLayer> layers)
+    : shell_(shell), frames_(frames), layers_(std::move(layers)) {
+    for (const Prism& prism : shell.prisms)
+        if (!prism.is_solid && (prism.layer >= layers_.size() || !layers_[prism.layer].tracer))
+            throw std::invalid_argument("relief: layer " + std::to_string(prism.layer) + " has no tracer");
+}
+
+SurfaceRelief::SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames, const ReliefTracer& tracer)
+    : SurfaceRelief(shell, frames, {{&tracer, 0}}) {}
 
 namespace {
 
@@ -118,39 +128,59 @@ void cross(Walk& walk, const ReliefShell& shell) {
 
 } // namespace
 
-void SurfaceRelief::follow(std::vector<Walk>& walks) const {
-    const std::uint32_t most = std::uint32_t(std::min<std::size_t>(3 * shell_.prisms.size() + 16, 1u << 20));
-    std::vector<std::uint32_t> going, traced;
+/// The rays of one layer that are traced at once.
+struct SurfaceRelief::Wave {
+    const SurfaceReliefLayer* layer = nullptr;
+    std::vector<std::uint32_t> traced;
     std::vector<ReliefRay> rays;
     std::vector<ReliefHit> hits;
+
+    void take(std::uint32_t i, const Walk& w) {
+        const double deepest = w.segment.at.z + w.segment.step.z * (w.segment.step.z > 0 ? w.segment.end : w.s);
+        if (deepest < w.strength * double(layer->least_depth) - 1e-6)
+            return;
+        traced.push_back(i);
+        rays.push_back(relief_ray_of(w.segment, w.s, w.strength));
+    }
+};
+
+void SurfaceRelief::step(Wave& wave, std::vector<Walk>& walks) const {
+    wave.hits.assign(wave.rays.size(), {});
+    wave.layer->tracer->trace(wave.rays, wave.hits);
+    for (std::size_t k = 0; k < wave.traced.size(); ++k) {
+        Walk& w = walks[wave.traced[k]];
+        const ReliefHit& hit = wave.hits[k];
+        w.reads += hit.reads;
+        if (!hit.found())
+            continue;
+        w.state = Walk::State::hit;
+        w.s = std::min(w.s + double(hit.t), w.segment.end);
+        w.depth = double(hit.depth) * w.strength;
+        w.slope = glm::dvec2(hit.slope) * w.strength;
+    }
+    wave.traced.clear();
+    wave.rays.clear();
+}
+
+void SurfaceRelief::follow(std::vector<Walk>& walks) const {
+    const std::uint32_t most = std::uint32_t(std::min<std::size_t>(3 * shell_.prisms.size() + 16, 1u << 20));
+    std::vector<std::uint32_t> going;
+    std::vector<Wave> waves(layers_.size());
+    for (std::size_t l = 0; l < layers_.size(); ++l)
+        waves[l].layer = &layers_[l];
     for (std::uint32_t i = 0; i < walks.size(); ++i)
         if (walks[i].state == Walk::State::going)
             going.push_back(i);
     while (!going.empty()) {
-        traced.clear();
-        rays.clear();
         for (const std::uint32_t i : going) {
             Walk& w = walks[i];
             w.segment = shell_segment(shell_, w.prism, w.tetrahedron, w.entry, w.origin, w.direction, w.s);
             ++w.tetrahedra;
-            const double deepest = w.segment.at.z + w.segment.step.z * (w.segment.step.z > 0 ? w.segment.end : w.s);
-            if (deepest < w.strength * double(least_depth_) - 1e-6)
-                continue;
-            traced.push_back(i);
-            rays.push_back(relief_ray_of(w.segment, w.s, w.strength));
+            waves[shell_.prisms[w.prism].layer].take(i, w);
         }
-        hits.assign(rays.size(), {});
-        tracer_.trace(rays, hits);
-        for (std::size_t k = 0; k < traced.size(); ++k) {
-            Walk& w = walks[traced[k]];
-            w.reads += hits[k].reads;
-            if (!hits[k].found())
-                continue;
-            w.state = Walk::State::hit;
-            w.s = std::min(w.s + double(hits[k].t), w.segment.end);
-            w.depth = double(hits[k].depth) * w.strength;
-            w.slope = glm::dvec2(hits[k].slope) * w.strength;
-        }
+        for (Wave& wave : waves)
+            if (!wave.rays.empty())
+                step(wave, walks);
         std::erase_if(going, [&](std::uint32_t i) {
             if (walks[i].state == Walk::State::going)
                 cross(walks[i], shell_);

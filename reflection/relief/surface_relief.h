@@ -46,12 +46,17 @@ struct SurfaceHit {
 /// full from three quarters on, smoothly between, so that nothing pops.
 float relief_strength(float pixels);
 
+/// Relief of one layer of the shell.
+struct SurfaceReliefLayer {
+    const ReliefTracer* tracer = nullptr; ///< of relief that fills the tile that texture coordinates tell
+    float least_depth = 0;                ///< of that relief, 0 if not known: rays above it are not traced
+};
+
 class SurfaceRelief {
   public:
-    /// All are kept by reference. `tracer`: of relief that fills the tile that texture coordinates tell.
-    /// `least_depth`: of that relief, 0 if not known; rays above it are not traced.
-    SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames, const ReliefTracer& tracer,
-                  float least_depth = 0);
+    /// All are kept by reference. Throws std::invalid_argument where a layer of the shell that is not solid has none.
+    SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames, std::vector<SurfaceReliefLayer> layers);
+    SurfaceRelief(const ReliefShell& shell, const TangentFrames& frames, const ReliefTracer& tracer);
 
     /// First hits; `hits` has as many elements as `rays`. A ray that meets a triangle from inside, or one without room
     /// for relief, hits it there. Each result is the same whatever rays are beside it; the calling thread alone works.
@@ -66,13 +71,14 @@ class SurfaceRelief {
 
   private:
     struct Walk;
+    struct Wave;
+    void step(Wave& wave, std::vector<Walk>& walks) const;
     void follow(std::vector<Walk>& walks) const;
     SurfaceHit hit_of(const Walk& walk, const SurfaceRay& ray) const;
 
     const ReliefShell& shell_;
     const TangentFrames& frames_;
-    const ReliefTracer& tracer_;
-    float least_depth_;
+    std::vector<SurfaceReliefLayer> layers_;
 };
 
 } // namespace kokage

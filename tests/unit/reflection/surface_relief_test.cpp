@@ -1,4 +1,5 @@
 // Relief on curved bark against the same relief as a mesh of a few hundred thousand triangles that Embree traces.
+#include "common/services/error.h"
 #include "reflection/relief/cell_by_cell.h"
 #include "reflection/relief/surface_relief.h"
 #include "tests/unit/common/scene_builders.h"
@@ -233,6 +234,43 @@ TEST_P(OnTubes, ShadowsAreThoseOfTheDisplacedMesh) {
     EXPECT_GT(dark, counted / 20);
     EXPECT_LE(wrong, counted / 500) << "of " << counted;
     record("wrong", wrong, counted);
+}
+
+/// A tube whose lower part has one relief, the middle another one of other depth, the top none.
+TEST(SurfaceLayers, GoFromOneReliefToTheNext) {
+    const SurfaceArrays tube = make_tube(straight_trunk());
+    const HeightField fields[2] = {ridged_field(48, 40), ridged_field(21, 64)};
+    const auto coarse = make_cell_by_cell_tracer(fields[0]), fine = make_cell_by_cell_tracer(fields[1]);
+    ReliefLayers layers{{{0.03f, 0, 0.3f}, {0.015f, 0, 0.3f}, {0, 0, 0.3f}}, {}};
+    for (std::size_t t = 0; t < tube.triangles.size(); ++t)
+        layers.of_triangle.push_back(t < 24 * 2 * 5 ? 0 : t < 24 * 2 * 10 ? 1 : 2);
+    const ReliefShell shell = make_relief_shell(tube.mesh(), layers, "tube");
+    const TangentFrames frames = make_tangent_frames(tube.mesh());
+    EXPECT_THROW(SurfaceRelief(shell, frames, *coarse), std::invalid_argument);
+    const SurfaceRelief relief(shell, frames, {{coarse.get(), 0}, {fine.get(), 0.01f}, {}});
+    const PatchScene base = scene_of(tube.positions, tube.triangles);
+    const RayQueries queries(base);
+    auto view = camera_rays({0, 1, 2.4f}, {0, 0.5f, 0}, 0.8f, kSize);
+    std::erase_if(view, [](const SurfaceRay& ray) { return std::abs(ray.direction.x) > 0.05f; }); // on the tube
+    std::vector<SurfaceHit> hits(view.size());
+    trace_from_outside(
+        relief, view, entries_of(queries, view), [](std::size_t, float) { return 1.f; }, hits);
+    int of_layer[3] = {};
+    for (const SurfaceHit& hit : hits) {
+        ASSERT_TRUE(hit.found());
+        const int layer = shell.prisms[hit.triangle].layer;
+        ++of_layer[layer];
+        EXPECT_EQ(hit.thickness_m > 0, layer < 2);
+        if (layer < 2) {
+            EXPECT_NEAR(depth_at(fields[layer], glm::dvec2(hit.uv)), double(hit.depth), 2e-4);
+        }
+    }
+    EXPECT_GT(of_layer[0], 1000);
+    EXPECT_GT(of_layer[1], 1000);
+    EXPECT_GT(of_layer[2], 400);
+
+    layers.of_triangle.pop_back();
+    EXPECT_THROW(make_relief_shell(tube.mesh(), layers, "tube"), InputError);
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, OnTubes, testing::Values(0, 1, 2));
