@@ -1,4 +1,5 @@
 #include "reflection/relief/cone_map.h"
+#include "common/services/checked_file.h"
 #include "common/services/parallel.h"
 #include "reflection/relief/bilinear_cell.h"
 
@@ -128,6 +129,18 @@ class ConeSearch {
     std::array<Block, 128> stack_; ///< at most three wait on each of up to 32 levels
 };
 
+constexpr CheckedFileKind kStoredCones{
+    {'K', 'o', 'C', 'o', 'n', 'e', 's', 'R'}, 1, "relief cones", "another height field"};
+
+std::uint64_t identity_of(const HeightField& field) {
+    FileIdentity identity;
+    identity.add_value(field.width);
+    identity.add_value(field.height);
+    identity.add_value(int(field.wrap));
+    identity.add(std::as_bytes(std::span(field.depths)));
+    return identity.value();
+}
+
 } // namespace
 
 std::vector<CellCone> make_cone_map(const HeightField& field) {
@@ -139,6 +152,24 @@ std::vector<CellCone> make_cone_map(const HeightField& field) {
             for (std::size_t i = 0; i < std::size_t(field.width); ++i)
                 cones[j * std::size_t(field.width) + i] = search.cone(int(i), int(j));
     });
+    return cones;
+}
+
+void store_cone_map(const HeightField& field, const std::vector<CellCone>& cones, const std::filesystem::path& path) {
+    const std::array arrays{std::as_bytes(std::span(cones))};
+    write_checked_file(path, kStoredCones, identity_of(field), arrays);
+}
+
+std::vector<CellCone> load_cone_map(const HeightField& field, const std::filesystem::path& path) {
+    const CheckedFile file(path, kStoredCones, identity_of(field));
+    std::vector<CellCone> cones = file.copied<CellCone>(0);
+    if (cones.size() != field.depths.size())
+        file.refuse_altered("it has " + std::to_string(cones.size()) + " cones, not " +
+                            std::to_string(field.depths.size()));
+    for (const CellCone& cone : cones)
+        if (!(cone.top >= 0 && cone.top <= 1 && cone.ratio > 0 && cone.ratio <= kEmptyRatio))
+            file.refuse_altered("it has a cone of ratio " + std::to_string(cone.ratio) + " at depth " +
+                                std::to_string(cone.top));
     return cones;
 }
 

@@ -3,6 +3,7 @@
 // Intersection Algorithm (2006). Private to relief.
 #include "reflection/relief/height_field.h"
 
+#include <filesystem>
 #include <vector>
 
 namespace kokage {
@@ -23,5 +24,9 @@ inline constexpr float kEmptyRatio = 1e18f;
 /// clamped tile the last column and row are the border's. Each cell searches a pyramid of least depths, nearest
 /// first.
 std::vector<CellCone> make_cone_map(const HeightField& field);
+
+/// In a checked file (common/services/checked_file.h), to be loaded for the same field alone. Throw InputError.
+void store_cone_map(const HeightField& field, const std::vector<CellCone>& cones, const std::filesystem::path& path);
+std::vector<CellCone> load_cone_map(const HeightField& field, const std::filesystem::path& path);
 
 } // namespace kokage

@@ -187,9 +187,11 @@ HWY_EXPORT(TraceCones);
 
 namespace {
 
-class ConeTracer final : public ReliefTracer {
+class CellConeTracer final : public ConeTracer {
   public:
-    explicit ConeTracer(const HeightField& field) : field_(field), padded_(field), cones_(make_cone_map(field)) {}
+    explicit CellConeTracer(const HeightField& field) : field_(field), padded_(field), cones_(make_cone_map(field)) {}
+    CellConeTracer(const HeightField& field, const std::filesystem::path& path)
+        : field_(field), padded_(field), cones_(load_cone_map(field, path)) {}
 
     void trace(std::span<const ReliefRay> rays, std::span<ReliefHit> hits) const override {
         trace_in_lanes(field_, rays, hits, [&](auto block, const LaneResults& results) { run(block, results); });
@@ -200,6 +202,7 @@ class ConeTracer final : public ReliefTracer {
                          [&](auto block, const LaneResults& results) { run(block, results); });
     }
     std::size_t bytes() const override { return padded_.bytes() + cones_.size() * sizeof(CellCone); }
+    void store(const std::filesystem::path& path) const override { store_cone_map(field_, cones_, path); }
 
   private:
     void run(std::span<const ReliefRay> rays, const LaneResults& results) const {
@@ -214,8 +217,12 @@ class ConeTracer final : public ReliefTracer {
 
 } // namespace
 
-std::unique_ptr<ReliefTracer> make_cone_tracer(const HeightField& field) {
-    return std::make_unique<ConeTracer>(field);
+std::unique_ptr<ConeTracer> make_cone_tracer(const HeightField& field) {
+    return std::make_unique<CellConeTracer>(field);
+}
+
+std::unique_ptr<ConeTracer> load_cone_tracer(const HeightField& field, const std::filesystem::path& path) {
+    return std::make_unique<CellConeTracer>(field, path);
 }
 
 } // namespace kokage

@@ -147,7 +147,7 @@ class RayStream {
         rays.ray = Whole(-1);
         rays.reads = Whole(0);
         for (;;) {
-            const Mask idle = hn::MaskFromVec(hn::BitCast(Tag(), rays.ray)); // its sign bit
+            const Mask idle = hn::RebindMask(Tag(), hn::Lt(rays.ray, Whole(0)));
             const std::size_t idle_count = hn::CountTrue(Tag(), idle);
             if (idle_count >= kRefill && (ready_.next < ready_.count || next_given_ < given_.size())) {
                 Refill(rays, idle);

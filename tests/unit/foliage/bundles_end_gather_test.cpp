@@ -1,6 +1,6 @@
 // The vector code that adds up the ends of lines against a scalar loop in double precision.
 #include "foliage/bundles/end_gather.h"
-#include "tests/unit/foliage/instruction_sets.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <gtest/gtest.h>

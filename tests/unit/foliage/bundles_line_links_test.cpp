@@ -2,7 +2,7 @@
 #include "common/services/random.h"
 #include "foliage/bundles/bundle_tracing.h"
 #include "foliage/bundles/line_links.h"
-#include "tests/unit/foliage/instruction_sets.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>

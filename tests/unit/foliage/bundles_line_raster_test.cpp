@@ -1,6 +1,6 @@
 // The rasters of the lines against a slow twin: every pixel centre against every polygon, in double precision.
 #include "foliage/bundles/line_raster.h"
-#include "tests/unit/foliage/instruction_sets.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/unit/foliage/small_trees.h"
 
 #include <algorithm>

@@ -3,6 +3,7 @@
 #include "reflection/relief/cell_by_cell.h"
 #include "reflection/relief/linear_tracer.h"
 #include "tests/benchmark/relief_maps.h"
+#include "tests/support/instruction_sets.h"
 #include "tests/support/random_relief.h"
 #include "tests/support/relief_rays.h"
 
@@ -40,7 +41,7 @@ PlainHit plain_linear(const HeightField& field, const ReliefRay& ray, int steps,
     return hit;
 }
 
-TEST(ReliefLinear, IsThePlainLoop) {
+void expect_plain_loop() {
     const HeightField field = make_relief_map(ReliefMap::bark, 64, 48);
     const std::vector<ReliefRay> rays = view_rays(3000, 11);
     for (const LinearSearch& search : {LinearSearch{16, 5}, LinearSearch{64, 6}, LinearSearch{3, 0}}) {
@@ -56,6 +57,10 @@ TEST(ReliefLinear, IsThePlainLoop) {
         }
         EXPECT_LE(other, 30) << search.steps; // 1 %
     }
+}
+
+TEST(ReliefLinear, IsThePlainLoopWithEveryInstructionSet) {
+    test::with_every_instruction_set(expect_plain_loop);
 }
 
 TEST(ReliefLinear, HitsSmoothMapsRight) {
@@ -91,11 +96,11 @@ TEST(ReliefLinear, PassesThinFeaturesAsOftenAsExpected) {
     }
 }
 
-TEST(ReliefLinear, TakesOddFieldsAndRays) {
+void expect_sense_of_odd_fields_and_rays() {
     constexpr std::uint64_t seed = 14;
     Random random(seed);
     std::size_t agree = 0, all = 0;
-    for (int map = 0; map < 300; ++map) {
+    for (int map = 0; map < 100; ++map) {
         const HeightField field = random_height_field(random);
         std::vector<ReliefRay> rays;
         for (int k = 0; k < 20; ++k)
@@ -134,6 +139,10 @@ TEST(ReliefLinear, TakesOddFieldsAndRays) {
         }
     }
     EXPECT_GT(double(agree) / double(all), 0.95);
+}
+
+TEST(ReliefLinear, TakesOddFieldsAndRaysWithEveryInstructionSet) {
+    test::with_every_instruction_set(expect_sense_of_odd_fields_and_rays);
 }
 
 TEST(ReliefLinear, AnswersAreTheSameWhateverRaysAreBeside) {
