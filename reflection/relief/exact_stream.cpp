@@ -174,7 +174,8 @@ class Stream {
         lanes.reads = lanes.ray = hn::Zero(IntTag());
         lanes.level = Whole(-1);
         for (;;) {
-            const Mask idle = hn::MaskFromVec(hn::BitCast(Tag(), lanes.level)); // its sign bit
+            // Not by MaskFromVec: before AVX-512 a mask is right only if each lane's bits are all alike.
+            const Mask idle = hn::RebindMask(Tag(), hn::Lt(lanes.level, hn::Zero(IntTag())));
             std::size_t idle_count = hn::CountTrue(Tag(), idle);
             if (idle_count >= kRefill && (ready_.next < ready_.count || next_ray_ < rays_.size())) {
                 Refill(lanes, idle);
