@@ -71,11 +71,12 @@ double ggx_mass(double x) {
 }
 
 /// Pieces of [0, pi/2] that 24 nodes integrate to the last digit: each short beside its distance from the poles of
-/// h at angles +-i sqrt(2/x), and no longer than 16 radians of the fastest Legendre polynomial's phase.
-std::vector<double> ggx_pieces(double x, int bands) {
+/// h at angles +-i sqrt(2/x) (or the width of the smooth part's sharpest lobe), and no longer than 16 radians of the
+/// fastest Legendre polynomial's phase.
+std::vector<double> ggx_pieces(double sharpness, int bands) {
     const double end = kPiDouble / 2, longest = 16.0 / std::max(bands, 1);
     std::vector<double> borders{0};
-    double next = std::sqrt(2 / std::max(x, 1.0));
+    double next = std::sqrt(2 / std::max(sharpness, 1.0));
     while (borders.back() < end) {
         borders.push_back(std::min({next, borders.back() + longest, end}));
         next = std::max(next, 1.5 * borders.back());
@@ -83,15 +84,12 @@ std::vector<double> ggx_pieces(double x, int bands) {
     return borders;
 }
 
-} // namespace
-
-std::vector<double> ggx_lobe(int bands, double roughness) {
-    std::vector<double> k(std::size_t(std::max(bands, 0)), 1.0);
-    if (bands <= 1 || !(roughness > 0))
-        return k;
-    const double x = ggx_falloff(roughness), mass = ggx_mass(x);
-    std::fill(k.begin() + 1, k.end(), 0.0);
-    const std::vector<double> borders = ggx_pieces(x, bands);
+/// Adds to k the integrals of part(w) (1-w)/(1+xw)^2 / mass, w = 1 - t, times the Legendre polynomials.
+template <class Part>
+void add_ggx_integrals(std::vector<double>& k, double x, double sharpness, const Part& part) {
+    const int bands = int(k.size());
+    const double mass = ggx_mass(x);
+    const std::vector<double> borders = ggx_pieces(sharpness, bands);
     constexpr int nodes = 24;
     using Nodes = Eigen::Array<double, nodes, 1>; // together, as vectors
     static const std::vector<QuadratureNode> rule = gauss_legendre(nodes);
@@ -103,8 +101,10 @@ std::vector<double> ggx_lobe(int bands, double roughness) {
             const double angle = middle + half * rule[std::size_t(i)].x, half_sine = std::sin(0.5 * angle);
             w[i] = 2 * half_sine * half_sine;
             const double fall = 1 + x * w[i];
-            weight[i] = half * rule[std::size_t(i)].weight * std::sin(angle) * (1 - w[i]) / (fall * fall * mass);
+            weight[i] =
+                part(w[i]) * half * rule[std::size_t(i)].weight * std::sin(angle) * (1 - w[i]) / (fall * fall * mass);
         }
+        k[0] += weight.sum();
         // Bonnet's recurrence for d_l = 1 - P_l(t), by its steps: keeps its digits where t is almost 1.
         Nodes d = w, step = w;
         for (int l = 1; l < bands; ++l) {
@@ -114,7 +114,52 @@ std::vector<double> ggx_lobe(int bands, double roughness) {
             d += step;
         }
     }
+}
+
+/// 1 - (1+b) exp(-b)
+double smooth_factor(double b) {
+    if (b > 0.5)
+        return 1 - (1 + b) * std::exp(-b);
+    double sum = 0, term = b * b / 2; // its series, where the difference loses digits: (-1)^n (n-1) b^n / n!
+    for (int n = 2; n < 16; ++n, term *= -b / n)
+        sum += (n - 1) * term;
+    return sum;
+}
+
+} // namespace
+
+std::vector<double> ggx_lobe(int bands, double roughness) {
+    std::vector<double> k(std::size_t(std::max(bands, 0)), 1.0);
+    if (bands <= 1 || !(roughness > 0))
+        return k;
+    const double x = ggx_falloff(roughness);
+    std::fill(k.begin(), k.end(), 0.0);
+    add_ggx_integrals(k, x, x, [](double) { return 1.0; });
+    k[0] = 1;
     return k;
+}
+
+std::vector<double> ggx_smooth_part(int bands, double roughness, double sharpest) {
+    std::vector<double> k(std::size_t(std::max(bands, 0)), 0.0);
+    const double x = ggx_falloff(roughness);
+    if (bands > 0)
+        add_ggx_integrals(k, x, std::min(x, sharpest), [&](double w) {
+            return x > 0 ? smooth_factor(sharpest * (1 / x + w)) : 1.0; // u = 1/x
+        });
+    return k;
+}
+
+double ggx_smooth_share(double roughness, double sharpest) {
+    const double x = ggx_falloff(roughness), first = sharpest / x, last = first + sharpest; // b at w = 0 and 1
+    constexpr double kNothing = 40;                                                         // exp(-b) beyond
+    if (!(first < kNothing))
+        return 1;
+    // The near part's mass, with dw = db/sharpest and 1 - w = 1 + u - b/sharpest: integrals over b of
+    // (1+b) exp(-b)/b^2 = -(exp(-b)/b)' and of (1+b) exp(-b)/b = -(E1(b) + exp(-b))'.
+    const double from = std::exp(-first), to = std::exp(-last);
+    const double near =
+        (1 + 1 / x) * sharpest * (from / first - to / last) - (from - std::expint(-first) - to + std::expint(-last));
+    return 1 - near / (x * x * ggx_mass(x));
 }
 
 double ggx_lobe_value(double roughness, double squared_distance) {

@@ -31,6 +31,17 @@ double ggx_lobe_value(double roughness, double squared_distance);
 /// x above: how fast the lobe falls from its peak. 0 at roughness 1; roughness > 0.
 double ggx_falloff(double roughness);
 
+// GGX in two parts, as Ewald 1921 ("Die Berechnung optischer und elektrostatischer Gitterpotentiale", Annalen der
+// Physik 369(3)) split potentials: with w = 1 - t and u = 1/x,
+//     1/(u+w)^2 = integral over p > 0 of p exp(-p (u+w)) dp
+// is a mixture of lobes exp(-p w). Those with p up to `sharpest` are the smooth part, which few bands hold however
+// narrow the lobe is; the others the near part, which ends soon:
+//     near part / whole = (1+b) exp(-b),   b = sharpest (u+w).
+/// Zonal coefficients of the smooth part; k_0 is its share of the whole lobe's mass. roughness in (0, 1].
+std::vector<double> ggx_smooth_part(int bands, double roughness, double sharpest);
+/// That k_0 in closed form; absolute error 1e-14.
+double ggx_smooth_share(double roughness, double sharpest);
+
 /// Uniform over a cone, normalised to 1: the disc of a sun. half_angle in radians, 0 (all k_l = 1) to pi.
 std::vector<double> cone_lobe(int bands, double half_angle);
 

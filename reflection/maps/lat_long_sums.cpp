@@ -197,10 +197,10 @@ LatLongPlanes::LatLongPlanes(int image_width, int image_height) : width(image_wi
         plane.resize(stride * std::size_t(height) + padding);
 }
 
-void LatLongPlanes::set_pixels(const Image& image) {
+void LatLongPlanes::set_pixels(const Image& image, float scale) {
     for (std::size_t i = 0; i < stride * std::size_t(height); ++i)
         for (std::size_t c = 0; c < 3; ++c)
-            planes[c][i] = image.pixels[i * std::size_t(image.channels) + c];
+            planes[c][i] = scale * image.pixels[i * std::size_t(image.channels) + c];
 }
 
 glm::dvec3 LatLongPlanes::direction(int x, int y) const {

@@ -17,7 +17,7 @@ struct LatLongPlanes {
     std::vector<double> row_angle;                       ///< exact solid angle of a pixel
     std::vector<double> column_x, column_z; ///< direction = (row_sine column_x, row_cosine, row_sine column_z)
     LatLongPlanes(int image_width, int image_height);
-    void set_pixels(const Image& image);
+    void set_pixels(const Image& image, float scale = 1); ///< values are multiplied by `scale`
     glm::dvec3 direction(int x, int y) const;
     glm::dvec3 pixel(int x, int y) const;
 };

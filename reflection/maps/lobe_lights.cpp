@@ -167,9 +167,29 @@ std::size_t LobeLights::bytes() const {
     return groups_.size() * sizeof(Group) + texels_.size() * (sizeof(std::uint32_t) + 5 * sizeof(float));
 }
 
-std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float negligible,
-                              std::span<const float> factors, std::span<glm::vec3> filtered) const {
+namespace {
+
+/// By a power of two, so that the strongest is about 1: no lobe's peak makes it overflow, no tail underflow.
+double scale_to_one(std::vector<ClusterOfLight>& clusters) {
+    float most = 0;
+    for (const ClusterOfLight& cluster : clusters)
+        most = std::max(most, cluster.strength);
+    const float scale = most > 0 ? std::ldexp(1.f, std::clamp(-std::ilogb(most), -126, 126)) : 1.f;
+    for (ClusterOfLight& cluster : clusters) {
+        cluster.strength *= scale;
+        for (PointOfLight& point : cluster.points)
+            point.irradiance *= scale;
+    }
+    return double(scale);
+}
+
+} // namespace
+
+std::uint64_t LobeLights::add(std::span<const ClusterOfLight> lights, float negligible, std::span<const float> factors,
+                              std::span<glm::vec3> filtered) const {
     constexpr std::size_t kBlock = 64;
+    std::vector<ClusterOfLight> clusters(lights.begin(), lights.end());
+    const double scale = scale_to_one(clusters);
     const std::vector<LightTree> trees(clusters.begin(), clusters.end());
     std::vector<std::uint64_t> evaluated((groups_.size() + kBlock - 1) / kBlock);
     parallel_blocks(groups_.size(), kBlock, [&](std::size_t first, std::size_t last) {
@@ -178,17 +198,28 @@ std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float ne
         for (std::size_t g = first; g < last; ++g) {
             const Group& group = groups_[g];
             near.clear();
+            float allowed =
+                float(scale *
+                      double(negligible)); // before the factors, which are large where narrow lobes lie between pixels
+            if (!factors.empty()) {
+                float most = 0;
+                for (std::uint32_t i = group.begin; i < group.end; ++i)
+                    most = std::max(most, factors[texels_[i]]);
+                if (most == 0)
+                    continue;
+                allowed /= std::max(most, 1.f);
+            }
             const LobeBounds bounds{kind_, group.peak, group.least_shape, group.most_shape};
             for (std::size_t i = 0; i < clusters.size(); ++i) {
                 const ClusterOfLight& cluster = clusters[i];
-                const double share = double(negligible) / (double(cluster.strength) * double(group.peak));
+                const double share = double(allowed) / (double(cluster.strength) * double(group.peak));
                 if (!(share < 1))
                     continue;
                 // Distances between unit directions add up to more than the distance.
                 const float reach = float(std::sqrt(lobe_reach({kind_, double(group.widest)}, share))) + group.chord;
                 if (glm::distance(group.axis, cluster.axis) > reach + cluster.chord)
                     continue;
-                trees[i].gather(group.axis, group.chord, reach, bounds, negligible, near);
+                trees[i].gather(group.axis, group.chord, reach, bounds, allowed, near);
             }
             if (near.empty())
                 continue;
@@ -199,8 +230,8 @@ std::uint64_t LobeLights::add(std::span<const ClusterOfLight> clusters, float ne
                       near, sums, stride);
             for (std::size_t i = 0; i < count; ++i) {
                 const std::uint32_t texel = texels_[at + i];
-                const float factor = factors.empty() ? 1.f : factors[texel];
-                filtered[texel] += factor * glm::vec3(sums[i], sums[stride + i], sums[2 * stride + i]);
+                const double factor = (factors.empty() ? 1.0 : double(factors[texel])) / scale;
+                filtered[texel] += glm::vec3(factor * glm::dvec3(sums[i], sums[stride + i], sums[2 * stride + i]));
             }
         }
     });

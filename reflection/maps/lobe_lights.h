@@ -32,11 +32,11 @@ ClusterOfLight cluster_of(const DistantLight& light, double least_spread);
 class LobeLights {
   public:
     explicit LobeLights(const TexelLayout& layout);
-    /// filtered += factors[texel] x sum over points of irradiance x lobe, but for clusters that add less than
-    /// `negligible`; points far from a group of texels are gathered as long as that changes less than `negligible` by
-    /// what is gathered in one. No factors = 1. The same bits with any number of threads. Returns how many lobes were
-    /// evaluated. Relative error 1e-5 beside.
-    std::uint64_t add(std::span<const ClusterOfLight> clusters, float negligible, std::span<const float> factors,
+    /// filtered += factors[texel] x sum over points of irradiance x lobe, but for lights that add less than
+    /// `negligible` (times factors below 1); points far from a group of texels are gathered as long as that changes
+    /// less than `negligible` by what is gathered in one. No factors = 1. The same bits with any number of threads.
+    /// Returns how many lobes were evaluated. Relative error 1e-5 beside.
+    std::uint64_t add(std::span<const ClusterOfLight> lights, float negligible, std::span<const float> factors,
                       std::span<glm::vec3> filtered) const;
     std::size_t bytes() const;
 

@@ -59,8 +59,9 @@ double RoughnessScale::smoothness(double exponent) const {
 // roughness 0.8, 6 % at 0.5, 8 % at 0.3 and 6 % at 0.1: GGX has a sharper peak on a wider foot.
 namespace {
 
+constexpr double mirror_limit = 0.305, power = 1.24;
+
 double exponent_from_alpha(double alpha) {
-    constexpr double mirror_limit = 0.305, power = 1.24;
     return (mirror_limit + (1 - mirror_limit) * std::pow(alpha, power)) / (alpha * alpha);
 }
 
@@ -75,13 +76,17 @@ double roughness_from_exponent(double exponent) {
         return 1; // nothing is rougher in GGX
     if (!std::isfinite(exponent))
         return 0;
-    // exponent x alpha² lies between 0.3 and 1 and falls with alpha: bisection.
-    double low = std::sqrt(0.3 / exponent), high = std::sqrt(1 / exponent);
-    for (int step = 0; step < 60; ++step) {
-        const double alpha = 0.5 * (low + high);
-        (exponent_from_alpha(alpha) > exponent ? low : high) = alpha;
+    // Newton's method on exponent alpha² - p(alpha), which is convex: from above it falls onto the root.
+    double alpha = std::sqrt(1 / exponent);
+    for (int step = 0; step < 20; ++step) {
+        const double curved = (1 - mirror_limit) * std::pow(alpha, power);
+        const double change =
+            (exponent * alpha * alpha - mirror_limit - curved) / (2 * exponent * alpha - power * curved / alpha);
+        alpha -= change;
+        if (std::abs(change) < 1e-14 * alpha)
+            break;
     }
-    return std::sqrt(0.5 * (low + high));
+    return std::sqrt(alpha);
 }
 
 } // namespace kokage

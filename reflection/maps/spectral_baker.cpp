@@ -5,8 +5,8 @@
 #include "common/services/large_vector.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
-#include "reflection/maps/brute_force_baker.h"
 #include "reflection/maps/lobe_lights.h"
+#include "reflection/maps/near_sums.h"
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/spectral_plan.h"
 #include "reflection/maps/spectral_read.h"
@@ -22,8 +22,8 @@ namespace kokage {
 namespace {
 
 constexpr std::size_t kReadBlock = 4096;
-constexpr double kLeastShare = 1e-13; ///< of a narrow lobe's peak, of pixels that count
-constexpr double kEvenContrast = 4;   ///< brightest pixel over mean, up to which an image has no bright parts
+constexpr std::size_t kNearBlock = 64;
+constexpr double kEvenContrast = 4; ///< brightest pixel over mean, up to which an image has no bright parts
 
 std::string text(const char* format, double value) {
     char buffer[64];
@@ -66,7 +66,7 @@ float scale_to_one(float most) {
 }
 
 constexpr CheckedFileKind kStoredSetup{{'K', 'o', 'k', 'a', 'g', 'e', 'S', 'H'},
-                                       2,
+                                       3,
                                        "stored set-up of the spectral baker",
                                        "a map or images of another size, lobe, range or tolerance"};
 
@@ -101,7 +101,8 @@ class SpectralBaker final : public Baker {
     void filter_smooth(const Image& image, const Range& range, std::span<glm::vec3> filtered, WorkReport& report,
                        Progress& progress);
     void skip_bands(WorkReport& report) const;
-    void filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report, Progress& progress);
+    void filter_near(const Image& image, const Image& remainder, std::span<glm::vec3> filtered, WorkReport& report,
+                     Progress& progress);
 
     Stopwatch watch_; ///< runs from the beginning of the set-up
     TexelLayout layout_;
@@ -109,9 +110,9 @@ class SpectralBaker final : public Baker {
     SpectralSettings settings_;
     SpectralPlan plan_;
     LargeVector<TexelPlace> places_;
-    std::vector<std::uint32_t> direct_; ///< texels that are summed pixel by pixel
+    std::vector<std::uint32_t> near_; ///< texels of which some or all is summed pixel by pixel
     std::optional<RingAnalysis> analysis_;
-    /// Neighbouring shells with grids of one size.
+    /// Neighbouring shells with grids of one size: they share a table.
     struct ShellGroup {
         std::size_t first, count;
         RingSynthesis synthesis;
@@ -120,7 +121,9 @@ class SpectralBaker final : public Baker {
     std::vector<std::vector<double>> zonals_, even_zonals_; ///< of each shell; those of images without bright parts
     std::vector<RingGrid> grids_;                           ///< of each shell
     LobeLights lights_;
-    std::vector<float> factors_; ///< of each texel: 1 over the sum of its weights, 0 where it is summed pixel by pixel
+    std::vector<float> smooth_sums_; ///< of each texel's weights in harmonics, of which each lobe has mass 1
+    std::vector<float> factors_;     ///< of each texel: 1 over the sum of its weights, with near parts once they were
+                                     ///< summed; 0 where all is near
     double least_spread_;
 };
 
@@ -146,7 +149,7 @@ SpectralBaker::SpectralBaker(const TexelLayout& layout, int width, int height, c
         bytes += array.size_bytes();
     report.counts.push_back({"bands", std::uint64_t(plan_.shells().empty() ? 0 : plan_.bands())});
     report.counts.push_back({"spectral shells", plan_.shells().size()});
-    report.counts.push_back({"texels summed pixel by pixel", direct_.size()});
+    report.counts.push_back({"texels with pixels nearby summed", near_.size()});
     report.counts.push_back({"prepared bytes", bytes});
 }
 
@@ -176,7 +179,7 @@ void SpectralBaker::make_tables(StoredArrays& stored, Progress& progress) {
         progress.throw_if_stopped();
         const int rings = shells[begin].rings;
         std::size_t bands = 0;
-        for (; end < shells.size() && end - begin < RingSynthesis::kMostGrids && shells[end].rings == rings; ++end) {
+        for (; end < shells.size() && shells[end].rings == rings; ++end) {
             bands = std::max(bands, shells[end].zonal.size());
             zonals_.push_back(shells[end].zonal);
             even_zonals_.emplace_back(shells[end].zonal.begin(), shells[end].zonal.begin() + shells[end].even_bands);
@@ -201,15 +204,20 @@ void SpectralBaker::store(const std::filesystem::path& path, WorkReport& report)
     std::vector<std::span<const std::byte>> arrays;
     for (const std::span<const float> array : tables())
         arrays.push_back(std::as_bytes(array));
-    arrays.push_back(std::as_bytes(std::span(factors_)));
+    arrays.push_back(std::as_bytes(std::span(smooth_sums_)));
     write_checked_file(path, kStoredSetup, identity(), arrays);
     report.stages.push_back({"writing the set-up", watch.cpu(), watch.wall()});
 }
 
 void SpectralBaker::place_texels() {
     std::vector<std::uint32_t> spectral;
-    for (std::size_t i = 0; i < layout_.size(); ++i)
-        (plan_.is_direct(layout_.parameters[i]) ? direct_ : spectral).push_back(std::uint32_t(i));
+    for (std::size_t i = 0; i < layout_.size(); ++i) {
+        const float parameter = layout_.parameters[i];
+        if (!plan_.is_near_only(parameter))
+            spectral.push_back(std::uint32_t(i));
+        if (plan_.near_part(parameter).reach > 0)
+            near_.push_back(std::uint32_t(i));
+    }
     places_.resize(spectral.size());
     parallel_blocks(spectral.size(), kReadBlock, [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i)
@@ -219,13 +227,14 @@ void SpectralBaker::place_texels() {
 }
 
 /// The sum over pixels is divided by the sum of their weights ([R] eq 9), which is 1 but near the poles, where a row of
-/// pixels stands for a whole cap, and where pixels are coarse: the same bake of a white image.
+/// pixels stands for a whole cap, and where pixels are coarse: the same bake of a white image. Near parts are added to
+/// both when they are summed.
 void SpectralBaker::normalize(StoredArrays& stored) {
     if (places_.empty())
         return;
     const std::span<const float> known = stored.next();
-    factors_.assign(known.begin(), known.end());
-    if (stored && factors_.size() != layout_.size())
+    smooth_sums_.assign(known.begin(), known.end());
+    if (stored && smooth_sums_.size() != layout_.size())
         stored.file().refuse_altered("its texels are not as many as the map's");
     if (!stored) {
         Image white(width_, height_, 3);
@@ -233,13 +242,16 @@ void SpectralBaker::normalize(StoredArrays& stored) {
         std::vector<glm::vec3> sums(layout_.size());
         WorkReport unused;
         filter_smooth(white, {glm::vec3(1), glm::vec3(1), 0}, sums, unused, silent_progress());
-        factors_.assign(layout_.size(), 0.f);
-        for (const TexelPlace& place : places_)
-            factors_[place.texel] = 1 / sums[place.texel].g;
+        for (const glm::vec3& sum : sums)
+            smooth_sums_.push_back(sum.g);
     }
+    factors_.assign(layout_.size(), 0.f);
     for (TexelPlace& place : places_)
-        for (float& weight : place.weights)
-            weight *= factors_[place.texel];
+        if (!(plan_.near_part(layout_.parameters[place.texel]).reach > 0)) {
+            factors_[place.texel] = 1 / smooth_sums_[place.texel];
+            for (float& weight : place.weights)
+                weight *= factors_[place.texel];
+        }
 }
 
 void SpectralBaker::filter_smooth(const Image& image, const Range& range, std::span<glm::vec3> filtered,
@@ -253,12 +265,15 @@ void SpectralBaker::filter_smooth(const Image& image, const Range& range, std::s
     analysis_->transform(image, scale, coefficients);
     report.stages.push_back({"harmonics of the image", watch.cpu(), watch.wall()});
     watch.restart();
-    for (const ShellGroup& group : groups_) {
-        progress.throw_if_stopped();
-        group.synthesis.transform(coefficients,
-                                  std::span(even ? even_zonals_ : zonals_).subspan(group.first, group.count), 1,
-                                  std::span(grids_).subspan(group.first, group.count));
-    }
+    const std::span<const std::vector<double>> zonals(even ? even_zonals_ : zonals_);
+    for (const ShellGroup& group : groups_)
+        for (std::size_t done = 0; done < group.count; done += RingSynthesis::kMostGrids) {
+            progress.throw_if_stopped();
+            const std::size_t first = group.first + done,
+                              count = std::min(group.count - done, RingSynthesis::kMostGrids);
+            group.synthesis.transform(coefficients, zonals.subspan(first, count), 1,
+                                      std::span(grids_).subspan(first, count));
+        }
     report.stages.push_back({"filtering on rings", watch.cpu(), watch.wall()});
     if (even)
         skip_bands(report);
@@ -286,24 +301,39 @@ void SpectralBaker::skip_bands(WorkReport& report) const {
                                 std::to_string(all - used) + " of " + std::to_string(all) + " coefficients filtered"});
 }
 
-void SpectralBaker::filter_direct(const Image& image, std::span<glm::vec3> filtered, WorkReport& report,
-                                  Progress& progress) {
-    if (direct_.empty())
+/// Lobes that are near only see the whole image; near parts the remainder, because lights are added as whole lobes.
+void SpectralBaker::filter_near(const Image& image, const Image& remainder, std::span<glm::vec3> filtered,
+                                WorkReport& report, Progress& progress) {
+    if (near_.empty())
         return;
     const Stopwatch watch;
-    LatLongPlanes planes(width_, height_);
-    planes.set_pixels(image);
-    parallel_blocks(direct_.size(), 64, [&](std::size_t begin, std::size_t end) {
+    const bool whole = plan_.is_near_only(layout_.parameters[near_.front()]); // then all of them are
+    const Image& seen = whole ? image : remainder;
+    const float scale = scale_to_one(largest(range_of(seen).most));
+    NearSums pixels(width_, height_);
+    pixels.set_pixels(seen, scale);
+    parallel_blocks(near_.size(), kNearBlock, [&](std::size_t begin, std::size_t end) {
         progress.throw_if_stopped();
+        NearSums::Scratch scratch;
         for (std::size_t i = begin; i < end; ++i) {
-            const std::uint32_t texel = direct_[i];
+            const std::uint32_t texel = near_[i];
+            const float parameter = layout_.parameters[texel];
+            const NearLobe near = plan_.near_part(parameter);
+            const glm::dvec3 direction = glm::normalize(glm::dvec3(layout_.directions[texel]));
+            if (whole) {
+                filtered[texel] = pixels.whole(near, direction, scratch) / scale;
+                continue;
+            }
+            const glm::dvec4 part = lobe_value(near.lobe, 0) * pixels.part(near, direction, scratch);
+            const double share = plan_.smooth_share(parameter),
+                         factor = 1 / (share * double(smooth_sums_[texel]) + part.w);
+            factors_[texel] = float(factor);
             filtered[texel] =
-                glm::vec3(filtered_image(planes, {layout_.kind, double(layout_.parameters[texel])},
-                                         glm::normalize(glm::dvec3(layout_.directions[texel])), kLeastShare));
+                glm::vec3(factor * (share * glm::dvec3(filtered[texel]) + glm::dvec3(part) / double(scale)));
         }
         progress.advance(end - begin);
     });
-    report.stages.push_back({"summing pixel by pixel", watch.cpu(), watch.wall()});
+    report.stages.push_back({"summing pixels nearby", watch.cpu(), watch.wall()});
 }
 
 void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> filtered, WorkReport& report,
@@ -316,7 +346,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
     if (filtered.size() != layout_.size())
         throw InputError("baking: " + std::to_string(filtered.size()) + " places for " +
                          std::to_string(layout_.size()) + " texels");
-    progress.begin("filtering", direct_.size() + 1);
+    progress.begin("filtering", near_.size() + 1);
     const Range range = range_of(image);
     report.counts.push_back({"texels", layout_.size()});
     SplitSurroundings split = split_surroundings(surroundings, least_spread_, report);
@@ -327,7 +357,7 @@ void SpectralBaker::bake(const Environment& surroundings, std::span<glm::vec3> f
              std::to_string(plan_.shells().size()) + " shells of up to " + std::to_string(plan_.bands()) + " bands"});
     } else {
         filter_smooth(split.remainder, range_of(split.remainder), filtered, report, progress);
-        filter_direct(image, filtered, report, progress);
+        filter_near(image, split.remainder, filtered, report, progress);
     }
     if (places_.empty())
         split.of_image.clear(); // they are in what was summed pixel by pixel

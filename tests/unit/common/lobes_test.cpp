@@ -159,6 +159,47 @@ TEST(Lobes, GgxIsTheCosineAtRoughnessOneAndTheMirrorAtZero) {
     EXPECT_TRUE(ggx_lobe(0, 0.5).empty());
 }
 
+TEST(Lobes, GgxsSmoothPartAgreesWithQuadratureAndIsTheWholeWithoutTheNearOne) {
+    for (double roughness : {0.001, 0.02, 0.3, 1.0})
+        for (double sharpest : {10.0, 20000.0}) {
+            const long double alpha = (long double)(roughness)*roughness, u = 2 * alpha * alpha / (1 - alpha * alpha);
+            long double sum = 0; // of the whole and of the smooth part
+            const auto k = ggx_smooth_part(100, roughness, sharpest);
+            const auto slow = slow_coefficients(100, 1e-14, [&](long double w) {
+                if (roughness == 1)
+                    return 1 - w;
+                const long double b = (long double)(sharpest) * (u + w);
+                // The integral of p exp(-p (u+w)) up to `sharpest`, where that keeps digits as a series.
+                long double smooth = 0, term = b * b / 2;
+                if (b > 1)
+                    smooth = 1 - (1 + b) * std::exp(-b);
+                else
+                    for (int n = 2; n < 30; ++n, term *= -b / n)
+                        smooth += (n - 1) * term;
+                return (1 - w) * smooth / ((u + w) * (u + w));
+            });
+            for (std::size_t l = 0; l < k.size(); ++l)
+                ASSERT_NEAR(k[l] / k[0], slow[l], 1e-12) << "roughness " << roughness << " l " << l;
+            EXPECT_NEAR(ggx_smooth_share(roughness, sharpest), k[0], 1e-14) << roughness << " " << sharpest;
+            // What is left is the near part, exp(-b) (1+b) of the whole, by the same pieces.
+            const auto both = ggx_lobe(100, roughness);
+            for (double from = 0, to = 1e-14;; from = to, to = std::min(1.0, 1.5 * to)) {
+                for (const QuadratureNode& node : gauss_legendre(40)) {
+                    const double w = from + 0.5 * (to - from) * (1 + node.x), b = sharpest * (double(u) + w);
+                    if (roughness < 1)
+                        sum += 2 * kPiDouble * 0.5 * (to - from) * node.weight * ggx_lobe_value(roughness, 2 * w) *
+                               (1 + b) * std::exp(-b);
+                }
+                if (to >= 1)
+                    break;
+            }
+            EXPECT_NEAR(double(sum), 1 - k[0], 1e-11);
+            EXPECT_LE(k[99], both[99] + 1e-12);
+        }
+    EXPECT_LT(std::abs(ggx_smooth_part(400, 0.01, 1000)[399]), 1e-11 * ggx_smooth_share(0.01, 1000));
+    EXPECT_TRUE(ggx_smooth_part(0, 0.5, 10).empty());
+}
+
 TEST(Lobes, PhongAgreesWithQuadratureUpToTheSmoothest) {
     for (double exponent : {0.3, 0.77, 1.0, 5.7, 63.9, 1234.5, 5000.0, 1e5}) {
         const auto k = phong_lobe(300, exponent);

@@ -1,4 +1,5 @@
 #include "common/directions/ring_transform.h"
+#include "common/environment/lat_long.h"
 #include "common/environment/split_lights.h"
 #include "common/services/error.h"
 #include "common/services/parallel.h"
@@ -180,13 +181,67 @@ TEST(SpectralBaker, LightsOfTheUserAreFilteredToo) {
     }
 }
 
-TEST(SpectralBaker, LobesTooNarrowForTheImageAreSummedPixelByPixel) {
+TEST(SpectralBaker, PhongLobesTooNarrowForTheImageAreSummedPixelByPixel) {
     const Environment environment = surroundings(noise(64, 32, 9));
     const TexelLayout layout = scattered(LobeKind::phong, 10, 1e5, 800);
     const SpectralPlan plan(layout, 64, 32, 1e-4);
-    EXPECT_TRUE(plan.is_direct(2e4f));
-    EXPECT_FALSE(plan.is_direct(20));
+    EXPECT_TRUE(plan.is_near_only(2e4f));
+    EXPECT_FALSE(plan.is_near_only(20));
     EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 2e-4);
+}
+
+TEST(SpectralBaker, NarrowGgxIsAPartInHarmonicsAndPixelsNearby) {
+    const TexelLayout layout = scattered(LobeKind::ggx, 0.01, 1, 1500);
+    const SpectralPlan plan(layout, 256, 128, 1.5e-4);
+    EXPECT_FALSE(plan.is_near_only(0.01f));
+    EXPECT_GT(plan.near_part(0.01f).reach, 0);
+    EXPECT_LT(plan.near_part(0.01f).reach, 0.01);
+    EXPECT_GT(plan.near_part(0.01f).reach, plan.near_part(0.15f).reach);
+    EXPECT_EQ(plan.near_part(0.4f).reach, 0);
+    EXPECT_LE(plan.bands(), 512);
+    for (const bool pattern : {true, false}) {
+        const Environment environment = surroundings(pattern ? colour_pattern(256, 128) : noise(256, 128, 3));
+        const Errors found = errors(bake(layout, environment).filtered, truth(layout, environment));
+        EXPECT_LT(found.largest, 1.5e-4) << (pattern ? "pattern" : "noise");
+    }
+}
+
+TEST(SpectralBaker, AFewNarrowGgxLobes) {
+    for (const float roughness : {0.001f, 0.02f, 0.05f, 0.1f, 0.13f}) {
+        TexelLayout layout = scattered(LobeKind::ggx, 0.5, 0.5, 1000);
+        std::fill(layout.parameters.begin(), layout.parameters.end(), roughness);
+        const Environment environment = surroundings(noise(256, 128, 11));
+        EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 1.5e-4) << roughness;
+    }
+}
+
+TEST(SpectralBaker, NarrowGgxInTheTolerancesThatAreAsked) {
+    const TexelLayout layout = scattered(LobeKind::ggx, 0.02, 0.3, 800);
+    const Environment environment = surroundings(noise(128, 64, 5));
+    const std::vector<glm::vec3> right = truth(layout, environment);
+    for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5})
+        EXPECT_LT(errors(bake(layout, environment, {tolerance, {}}).filtered, right).largest, 1.5 * tolerance);
+}
+
+/// Bright and dark side by side over six orders of magnitude, a sun, and texels at, beside and between its pixels.
+TEST(SpectralBaker, NarrowGgxInHighContrast) {
+    Image image = noise(256, 128, 7);
+    for (float& value : image.pixels)
+        value = std::pow(value, 12.f);
+    image.at(70, 40)[0] = image.at(70, 40)[1] = image.at(70, 40)[2] = 1e6f;
+    const Environment environment = surroundings(std::move(image));
+    const double mean = luminance_integral(environment.remainder) / (4 * kPiDouble);
+    TexelLayout layout = scattered(LobeKind::ggx, 0.005, 0.5, 2000);
+    const glm::dvec3 sun = pixel_direction(70, 40, 256, 128), beside = pixel_direction(71, 41, 256, 128);
+    for (const double share : {0.0, 0.1, 0.5, 0.9, 1.0, 2.0})
+        for (const float roughness : {0.005f, 0.05f, 0.1f, 0.2f}) {
+            layout.directions.emplace_back(glm::normalize(glm::mix(sun, beside, share)));
+            layout.parameters.push_back(roughness);
+        }
+    const Baked baked = bake(layout, environment);
+    const Errors found = errors(baked.filtered, truth(layout, environment), 1e-3 * mean);
+    EXPECT_LT(found.largest_relative, 3e-3);
+    EXPECT_GE(found.least, 0);
 }
 
 TEST(SpectralBaker, SumsPixelByPixelShowProgressAndCanBeStopped) {
@@ -205,12 +260,18 @@ TEST(SpectralBaker, SumsPixelByPixelShowProgressAndCanBeStopped) {
 }
 
 TEST(SpectralBaker, ImagesOfAnyShape) {
-    const TexelLayout layout = scattered(LobeKind::phong, 0.3, 3000, 300);
-    for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 1}, {1, 2}, {3, 5}, {97, 31}, {40, 40}, {20, 90}}) {
-        const Environment environment = surroundings(noise(size.x, size.y, 4));
-        EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 4e-4)
-            << size.x << "x" << size.y;
-    }
+    for (const TexelLayout& layout :
+         {scattered(LobeKind::phong, 0.3, 3000, 300), scattered(LobeKind::ggx, 0.01, 1, 300)})
+        for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 1}, {1, 2}, {3, 5}, {97, 31}, {40, 40}, {20, 90}}) {
+            const Environment environment = surroundings(noise(size.x, size.y, 4));
+            TexelLayout texels = layout;
+            if (size.x * size.y == 2) { // the first ones are as far from both pixels: either is right
+                texels.directions.erase(texels.directions.begin(), texels.directions.begin() + 5);
+                texels.parameters.erase(texels.parameters.begin(), texels.parameters.begin() + 5);
+            }
+            EXPECT_LT(errors(bake(texels, environment).filtered, truth(texels, environment)).largest, 4e-4)
+                << size.x << "x" << size.y << " " << lobe_kind_name(layout.kind);
+        }
 }
 
 TEST(SpectralBaker, OneColourNeedsOneBandAndSaysSo) {
@@ -261,19 +322,21 @@ TEST(SpectralBaker, RefusesWhatItWasNotMadeFor) {
 }
 
 TEST(SpectralBaker, SameBitsWithAnyNumberOfThreadsAndFrameAfterFrame) {
-    const TexelLayout layout = scattered(LobeKind::phong, 1, 1000, 9000);
-    Image image = noise(128, 64, 2);
-    image.at(5, 5)[0] = 1e4f;
-    const Environment environment = surroundings(std::move(image)), other = surroundings(noise(128, 64, 8));
-    set_thread_count(1);
-    const std::vector<glm::vec3> one = bake(layout, environment).filtered;
-    set_thread_count(0);
-    WorkReport report;
-    const auto baker = spectral_baker(layout, 128, 64, {}, report);
-    std::vector<glm::vec3> filtered(layout.size());
-    baker->bake(other, filtered, report);
-    baker->bake(environment, filtered, report);
-    EXPECT_EQ(filtered, one);
+    for (const TexelLayout& layout :
+         {scattered(LobeKind::phong, 1, 1000, 9000), scattered(LobeKind::ggx, 0.02, 1, 9000)}) {
+        Image image = noise(128, 64, 2);
+        image.at(5, 5)[0] = 1e4f;
+        const Environment environment = surroundings(std::move(image)), other = surroundings(noise(128, 64, 8));
+        set_thread_count(1);
+        const std::vector<glm::vec3> one = bake(layout, environment).filtered;
+        set_thread_count(0);
+        WorkReport report;
+        const auto baker = spectral_baker(layout, 128, 64, {}, report);
+        std::vector<glm::vec3> filtered(layout.size());
+        baker->bake(other, filtered, report);
+        baker->bake(environment, filtered, report);
+        EXPECT_EQ(filtered, one);
+    }
 }
 
 std::string refusal(const TexelLayout& layout, int width, int height, const SpectralSettings& settings) {
@@ -287,16 +350,18 @@ std::string refusal(const TexelLayout& layout, int width, int height, const Spec
 }
 
 TEST(SpectralBaker, AStoredSetupGivesTheSameBits) {
-    const TemporaryFolder folder;
-    const SpectralSettings settings{1e-3, folder / "set-up"};
-    const TexelLayout layout = scattered(LobeKind::phong, 1, 300, 500);
     const Environment environment = surroundings(noise(64, 32, 2));
-    const std::vector<glm::vec3> made = bake(layout, environment, settings).filtered;
-    ASSERT_TRUE(std::filesystem::exists(settings.stored_setup));
-    const Baked again = bake(layout, environment, settings);
-    EXPECT_EQ(again.filtered, made);
-    EXPECT_EQ(again.report.stages.front().name, "reading the set-up");
-    EXPECT_EQ(bake(layout, environment, {1e-3, {}}).filtered, made);
+    for (const TexelLayout& layout :
+         {scattered(LobeKind::phong, 1, 300, 500), scattered(LobeKind::ggx, 0.02, 1, 500)}) {
+        const TemporaryFolder folder;
+        const SpectralSettings settings{1e-3, folder / "set-up"};
+        const std::vector<glm::vec3> made = bake(layout, environment, settings).filtered;
+        ASSERT_TRUE(std::filesystem::exists(settings.stored_setup));
+        const Baked again = bake(layout, environment, settings);
+        EXPECT_EQ(again.filtered, made);
+        EXPECT_EQ(again.report.stages.front().name, "reading the set-up");
+        EXPECT_EQ(bake(layout, environment, {1e-3, {}}).filtered, made);
+    }
 }
 
 TEST(SpectralBaker, RefusesADamagedOrForeignSetupByName) {
