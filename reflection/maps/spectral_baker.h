@@ -4,7 +4,8 @@
 // what brute_force_baker.h sums: every pixel a point of light at its centre, divided by the sum of the weights.
 //
 // A layout of few lobes (shells, mips) has a grid for each; one of many (the voxel cube) reads four neighbouring grids.
-// Lobes narrower than 0.7 pixels, or of more than 512 bands, are summed pixel by pixel. Of what is below 0 within the
+// Of lobes narrower than 0.7 pixels, or of more than 512 bands, what is near their axis is summed pixel by pixel
+// (near_sums.h): all of a Phong lobe, of GGX what harmonics can't hold. Of what is below 0 within the
 // tolerance 0 is made; the report warns if it was more.
 #include "reflection/maps/baker.h"
 
