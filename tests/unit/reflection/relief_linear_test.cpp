@@ -77,7 +77,7 @@ TEST(ReliefLinear, HitsSmoothMapsRight) {
 // DESIGN's trial: 2 to 5 % of rays wrong with 64 steps on bark; fewer with more steps.
 TEST(ReliefLinear, PassesThinFeaturesAsOftenAsExpected) {
     const HeightField field = make_relief_map(ReliefMap::bark, 256, 256);
-    const std::vector<ReliefRay> rays = view_rays(20000, 13);
+    const std::vector<ReliefRay> rays = view_rays(10000, 13);
     std::vector<ReliefHit> hits(rays.size());
     double before = 1, reads_before = 0;
     for (const int steps : {16, 64, 256}) {
