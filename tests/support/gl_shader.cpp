@@ -46,7 +46,14 @@ class EglContext final : public GlContext {
             glTexImage2D(GL_TEXTURE_2D, 0, GL_RGBA32UI, width, height, 0, GL_RGBA_INTEGER, GL_UNSIGNED_INT, texels);
             break;
         }
+        textures_.push_back(name);
         return units_++;
+    }
+
+    void forget_textures() override {
+        glDeleteTextures(GLsizei(textures_.size()), textures_.data());
+        textures_.clear();
+        units_ = 0;
     }
 
     void use(const std::string& source, int targets, Language language) override {
@@ -128,6 +135,7 @@ class EglContext final : public GlContext {
     EGLDisplay display_;
     EGLContext context_;
     GLuint vertices_ = 0, program_ = 0;
+    std::vector<GLuint> textures_;
     int units_ = 0, targets_ = 0;
 };
 

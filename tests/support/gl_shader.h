@@ -20,6 +20,8 @@ class GlContext {
     enum class Format { r32f, rgba32f, rgba16ui, rgba32ui };
     /// Uploads texels, row by row, without filter and mips; the texture is bound to the unit that is returned.
     virtual int texture(Format format, int width, int height, const void* texels) = 0;
+    /// Units are few: all textures so far go, and units count from 0 again.
+    virtual void forget_textures() = 0;
 
     enum class Language { glsl_330, glsl_es_300 };
     /// Compiles a fragment shader (`source`, without #version) whose outputs are `targets` vec4s at locations 0, 1, ...

@@ -37,8 +37,13 @@ void main() {
 
 class OnPlane : public test::ReliefShader {
   protected:
+    void SetUp() override {
+        ReliefShader::SetUp();
+        if (gl_)
+            gl_->use(source_of("relief.glsl") + kPlaneMain, 2);
+    }
     GpuHits trace(const HeightField& field, const std::vector<ReliefRay>& rays) {
-        gl_->use(source_of("relief.glsl") + kPlaneMain, 2);
+        gl_->forget_textures();
         const ReliefTextures textures = make_relief_textures(field);
         set_relief(field, upload(textures.depths), upload(textures.planes), textures);
         std::vector<glm::vec4> origins, directions;
