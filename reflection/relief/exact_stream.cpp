@@ -167,34 +167,47 @@ class Stream {
     }
 
     void run() {
-        Lanes lanes;
-        for (Vec* field : FieldsOf(lanes))
-            *field = hn::Zero(Tag());
-        lanes.i = lanes.j = lanes.t = lanes.doubt = hn::Zero(Tag());
-        lanes.reads = lanes.ray = hn::Zero(IntTag());
-        lanes.level = Whole(-1);
-        for (;;) {
-            // Not by MaskFromVec: before AVX-512 a mask is right only if each lane's bits are all alike.
-            const Mask idle = hn::RebindMask(Tag(), hn::Lt(lanes.level, hn::Zero(IntTag())));
-            std::size_t idle_count = hn::CountTrue(Tag(), idle);
-            if (idle_count >= kRefill && (ready_.next < ready_.count || next_ray_ < rays_.size())) {
-                Refill(lanes, idle);
-                continue;
-            }
-            if (idle_count == kLanes)
-                return;
-            const Mask in_cells = hn::RebindMask(Tag(), hn::Eq(lanes.level, hn::Zero(IntTag())));
-            const std::size_t cell_count = hn::CountTrue(Tag(), in_cells);
-            if (cell_count >= kCellBatch || cell_count + idle_count == kLanes)
-                CellStep(lanes, in_cells);
-            else
-                NodeStep(lanes);
+        Lanes groups[kGroups];
+        for (Lanes& lanes : groups) {
+            for (Vec* field : FieldsOf(lanes))
+                *field = hn::Zero(Tag());
+            lanes.i = lanes.j = lanes.t = lanes.doubt = hn::Zero(Tag());
+            lanes.reads = lanes.ray = hn::Zero(IntTag());
+            lanes.level = Whole(-1);
+        }
+        for (bool busy = true; busy;) {
+            busy = false;
+            for (Lanes& lanes : groups)
+                busy |= Step(lanes);
         }
     }
 
   private:
-    static constexpr std::size_t kRefill = std::max<std::size_t>(1, kLanes / 4),
+    static constexpr std::size_t kRefill = std::max<std::size_t>(1, kLanes / 4), kGroups = 2,
                                  kCellBatch = std::max<std::size_t>(1, kLanes / 2);
+
+    /// False where there is nothing left to do.
+    HWY_INLINE bool Step(Lanes& lanes) {
+        const auto is_idle = [&] { // not by MaskFromVec: before AVX-512 a mask is right only if a lane's bits are alike
+            return hn::RebindMask(Tag(), hn::Lt(lanes.level, hn::Zero(IntTag())));
+        };
+        Mask idle = is_idle();
+        std::size_t idle_count = hn::CountTrue(Tag(), idle);
+        while (idle_count >= kRefill && (ready_.next < ready_.count || next_ray_ < rays_.size())) {
+            Refill(lanes, idle);
+            idle = is_idle();
+            idle_count = hn::CountTrue(Tag(), idle);
+        }
+        if (idle_count == kLanes)
+            return false;
+        const Mask in_cells = hn::RebindMask(Tag(), hn::Eq(lanes.level, hn::Zero(IntTag())));
+        const std::size_t cell_count = hn::CountTrue(Tag(), in_cells);
+        if (cell_count >= kCellBatch || cell_count + idle_count == kLanes)
+            CellStep(lanes, in_cells);
+        else
+            NodeStep(lanes);
+        return true;
+    }
 
     // ---- rays into lanes
 
