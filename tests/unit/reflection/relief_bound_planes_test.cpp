@@ -1,5 +1,6 @@
 // Every plane of a hierarchy against every corner of the cells under it.
 #include "reflection/relief/bound_planes.h"
+#include "tests/support/instruction_sets.h"
 
 #include <algorithm>
 #include <cmath>
@@ -53,23 +54,31 @@ std::pair<double, double> range_over(const BoundPlanes& bounds, std::size_t leve
     return {least, greatest};
 }
 
+void expect_bounds(const BoundPlanes& bounds) {
+    ASSERT_EQ(bounds.levels.back().columns * bounds.levels.back().rows, 1);
+    for (std::size_t level = 1; level < bounds.levels.size(); ++level)
+        for (int row = 0; row < bounds.levels[level].rows; ++row)
+            for (int column = 0; column < bounds.levels[level].columns; ++column) {
+                const auto [least, greatest] = range_over(bounds, level, column, row);
+                ASSERT_GE(least, 0) << "level " << level << " (" << column << ", " << row << ')';
+                ASSERT_LE(least, 3 * 0x1p-16)
+                    << "level " << level << " (" << column << ", " << row << "): touches no surface";
+            }
+}
+
 TEST(BoundPlanes, NeverLieBelowTheSurfaceNorFarAboveIt) {
     constexpr int kSizes[][2] = {{1, 1}, {1, 7}, {9, 2}, {37, 53}, {64, 64}, {128, 40}, {200, 100}};
-    for (const auto& [width, height] : kSizes)
-        for (const HeightWrap wrap : {HeightWrap::repeat, HeightWrap::clamp})
-            for (const Kind kind : {Kind::noise, Kind::waves, Kind::steps, Kind::constant, Kind::holes}) {
-                const BoundPlanes bounds = make_bound_planes(field_of(kind, width, height, wrap, 5));
-                ASSERT_EQ(bounds.columns, width + (wrap == HeightWrap::clamp));
-                ASSERT_EQ(bounds.levels.back().columns * bounds.levels.back().rows, 1);
-                for (std::size_t level = 1; level < bounds.levels.size(); ++level)
-                    for (int row = 0; row < bounds.levels[level].rows; ++row)
-                        for (int column = 0; column < bounds.levels[level].columns; ++column) {
-                            const auto [least, greatest] = range_over(bounds, level, column, row);
-                            ASSERT_GE(least, 0) << width << " x " << height << ", kind " << int(kind) << ", level "
-                                                << level << " (" << column << ", " << row << ')';
-                            ASSERT_LE(least, 3 * 0x1p-16) << level << ' ' << column << ' ' << row; // touches it
-                        }
-            }
+    test::with_every_instruction_set([&] {
+        for (const auto& [width, height] : kSizes)
+            for (const HeightWrap wrap : {HeightWrap::repeat, HeightWrap::clamp})
+                for (const Kind kind : {Kind::noise, Kind::waves, Kind::steps, Kind::constant, Kind::holes}) {
+                    SCOPED_TRACE(std::to_string(width) + " x " + std::to_string(height) + ", kind " +
+                                 std::to_string(int(kind)));
+                    const BoundPlanes bounds = make_bound_planes(field_of(kind, width, height, wrap, 5));
+                    ASSERT_EQ(bounds.columns, width + (wrap == HeightWrap::clamp));
+                    expect_bounds(bounds);
+                }
+    });
 }
 
 TEST(BoundPlanes, LieOnAPlaneWhereTheSurfaceIsOne) {
