@@ -216,6 +216,8 @@ SurfaceHit SurfaceRelief::hit_of(const Walk& walk, const SurfaceRay& ray) const 
     const TangentFrame frame = interpolate(frames_, walk.prism, hit.weights);
     hit.shading_normal = frame.normal;
     hit.geometric_normal = unit_or(triangle_normal(shell_, prism), frame.normal);
+    if (frame.normal == glm::vec3(0.f)) // a mesh with normals of no length
+        hit.shading_normal = hit.geometric_normal;
     if (!is_relief)
         return hit;
     hit.thickness_m = shell_.thickness_m(prism, glm::vec3(weights));

@@ -78,19 +78,24 @@ TangentFrames make_tangent_frames(const ReliefMesh& mesh) {
     TangentFrames result;
     result.corners.resize(mesh.triangles.size());
     std::map<CornerKey, std::uint32_t> known;
+    constexpr std::uint32_t kNone = 0xffffffffu;
+    std::vector<std::array<std::uint32_t, 3>> of_vertex(mesh.positions.size(), {kNone, kNone, kNone}); // by handedness
     std::vector<Sums> sums;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
         const glm::uvec3& triangle = mesh.triangles[t];
         const Derivatives d = derivatives(mesh, triangle);
         for (std::size_t k = 0; k < 3; ++k) {
-            const auto [at, is_new] =
-                known.try_emplace(corner_key(mesh, places, triangle[k], d.tiles), std::uint32_t(sums.size()));
-            result.corners[t][k] = at->second;
-            if (is_new)
-                sums.emplace_back().normal = unit_or_zero(glm::dvec3(mesh.normals[triangle[k]]));
+            std::uint32_t& frame = of_vertex[triangle[k]][d.tiles > 0 ? 0 : d.tiles < 0 ? 1 : 2];
+            if (frame == kNone) {
+                frame = known.try_emplace(corner_key(mesh, places, triangle[k], d.tiles), std::uint32_t(sums.size()))
+                            .first->second;
+                if (frame == sums.size())
+                    sums.emplace_back().normal = unit_or_zero(glm::dvec3(mesh.normals[triangle[k]]));
+            }
+            result.corners[t][k] = frame;
             if (d.tiles == 0)
                 continue;
-            Sums& s = sums[at->second];
+            Sums& s = sums[frame];
             const auto laid = [&](const glm::dvec3& v) { return unit_or_zero(v - glm::dot(v, s.normal) * s.normal); };
             const double weight = corner_angle(mesh, triangle, k);
             s.u += weight * laid(d.u);
