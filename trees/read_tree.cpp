@@ -2,13 +2,13 @@
 
 #include "common/obj/obj_scene.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "trees/find_branching.h"
 #include "trees/foreign_tree.h"
 #include "trees/tree_extras.h"
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <tiny_gltf.h>
 
@@ -38,13 +38,6 @@ bool holds_light(const GltfDocument& document) {
     return false;
 }
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
-
 /// Files of trees that other programs know.
 void refuse_other_formats(const std::filesystem::path& path, const std::string& extension) {
     constexpr std::array<std::string_view, 22> known = {
@@ -63,7 +56,7 @@ Tree read_tree(const std::filesystem::path& path, const ReadOptions& options, Pr
     if (!(options.leaf_size >= 0) || !std::isfinite(options.leaf_size))
         throw InputError("the leaf size is " + std::to_string(options.leaf_size) +
                          " m; it must be 0 (found by itself) or above");
-    const std::string extension = lower_case_extension(path);
+    const std::string extension = lower_ending(path);
     refuse_other_formats(path, extension);
     if (extension == ".obj")
         return tree_from_scene(read_obj_scene(path, progress), path.string(), options, progress);

@@ -1,5 +1,6 @@
 #include "viewer/bake_options.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "common/services/output_file.h"
 #include "reflection/maps/image_sequence.h"
 #include "viewer/data_folder.h"

@@ -2,6 +2,7 @@
 #include "common/scene/image_file.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
 #include "viewer/compare_maps.h"

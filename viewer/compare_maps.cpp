@@ -1,6 +1,7 @@
 #include "viewer/compare_maps.h"
 
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
 #include "viewer/output_check.h"

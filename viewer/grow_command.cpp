@@ -1,6 +1,7 @@
 // `kokage grow`: a tree from a species, as glTF.
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "common/services/output_file.h"
 #include "common/services/stopwatch.h"
 #include "trees/growth.h"

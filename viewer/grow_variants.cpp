@@ -1,6 +1,7 @@
 #include "viewer/grow_variants.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/only_stops.h"
 #include "common/services/stopwatch.h"
 #include "trees/describe.h"
 #include "trees/growth.h"
@@ -95,16 +96,6 @@ class Manifest {
     fs::path folder_;
     Json head_;
     std::map<std::uint64_t, Json> trees_;
-};
-
-/// Passes on that the user wants to stop, and keeps the stages of one tree to itself.
-class OnlyStops : public Progress {
-  public:
-    explicit OnlyStops(const Progress& progress) : progress_(progress) {}
-    bool stop_requested() const override { return progress_.stop_requested(); }
-
-  private:
-    const Progress& progress_;
 };
 
 /// Grows and writes one tree, and returns its entry in the manifest.

@@ -1,19 +1,13 @@
 #include "viewer/output_check.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "common/services/output_file.h"
 
 #include <algorithm>
-#include <cctype>
 #include <vector>
 
 namespace kokage {
 namespace fs = std::filesystem;
-
-std::string lower_ending(const fs::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return ending;
-}
 
 void check_output(const fs::path& path, std::string_view what, std::initializer_list<std::string_view> endings) {
     const std::string ending = lower_ending(path);

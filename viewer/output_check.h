@@ -2,13 +2,9 @@
 // Finds before the work begins what would make it useless after: a file that can't be written.
 #include <filesystem>
 #include <initializer_list>
-#include <string>
 #include <string_view>
 
 namespace kokage {
-
-/// The ending in lower case (".glb"); empty if there is none.
-std::string lower_ending(const std::filesystem::path& path);
 
 /// Throws InputError if `path` has none of the endings, is a folder, or can't be written where it is. `what` names the
 /// file in messages ("the picture").

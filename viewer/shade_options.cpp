@@ -1,5 +1,6 @@
 #include "viewer/shade_options.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "viewer/data_folder.h"
 #include "viewer/output_check.h"
 #include "viewer/shade_lods.h"

@@ -1,6 +1,7 @@
 #include "common/scene/image_file.h"
 #include "common/scene/image_io.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "common/services/output_file.h"
 
 #include <OpenImageIO/filesystem.h>
@@ -80,17 +81,10 @@ Image for_float_format(const Image& image, bool rgbe) {
     return rgbe ? convert_channels(std::move(result), 3) : result;
 }
 
-std::string lower_case_extension(const std::filesystem::path& path) {
-    std::string extension = path.extension().string();
-    std::transform(extension.begin(), extension.end(), extension.begin(),
-                   [](unsigned char c) { return char(std::tolower(c)); });
-    return extension;
-}
-
 } // namespace
 
 void save_image(const std::filesystem::path& path, const Image& image, const ImageSaving& saving) {
-    const std::string name = path.string(), extension = lower_case_extension(path);
+    const std::string name = path.string(), extension = lower_ending(path);
     const bool png = extension == ".png", hdr = extension == ".hdr";
     if (!png && !hdr && extension != ".exr")
         fail_to_write(name, "the name must end in .png, .exr or .hdr");

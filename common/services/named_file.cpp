@@ -27,6 +27,12 @@ std::vector<unsigned char> read_file_bytes(const fs::path& path, std::uint64_t m
     return bytes;
 }
 
+std::string lower_ending(const fs::path& path) {
+    std::string ending = path.extension().string();
+    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return ending;
+}
+
 std::string percent_decoded(const std::string& text) {
     const auto digit = [&](std::size_t i) {
         if (i >= text.size() || !std::isxdigit(static_cast<unsigned char>(text[i])))

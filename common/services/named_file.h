@@ -25,6 +25,9 @@ std::filesystem::path find_named_file(const std::filesystem::path& folder, const
 std::filesystem::path look_for_named_file(const std::filesystem::path& folder, const std::string& name,
                                           NameReach reach);
 
+/// A name's ending in lower case (".glb"); empty if there is none.
+std::string lower_ending(const std::filesystem::path& path);
+
 /// Percent escapes decoded; what is no valid escape stays as it is.
 std::string percent_decoded(const std::string& text);
 

@@ -1,5 +1,6 @@
 #include "reflection/maps/bake_sequence.h"
 #include "common/services/error.h"
+#include "common/services/only_stops.h"
 #include "common/services/stopwatch.h"
 #include "reflection/maps/sequence_journal.h"
 
@@ -14,16 +15,6 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMostNamed = 20;
-
-/// Passes on that the user wants to stop, and keeps the stages of one frame to itself.
-class OnlyStops : public Progress {
-  public:
-    explicit OnlyStops(const Progress& progress) : progress_(progress) {}
-    bool stop_requested() const override { return progress_.stop_requested(); }
-
-  private:
-    const Progress& progress_;
-};
 
 /// Adds what a frame took to what all took: one line a stage and a kind of warning, however many frames there are.
 void add_frame(WorkReport& total, const WorkReport& frame) {

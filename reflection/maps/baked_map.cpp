@@ -1,6 +1,7 @@
 #include "reflection/maps/baked_map.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "reflection/maps/baked_harmonics.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
@@ -9,7 +10,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cctype>
 #include <cmath>
 
 namespace kokage {
@@ -31,12 +31,6 @@ ParameterRange parameters_of(const MapSettings& settings, const SmoothnessRange&
     if (settings.lobe == LobeKind::phong)
         return {low, high};
     return {roughness_from_exponent(low), roughness_from_exponent(high)};
-}
-
-std::string lower_ending_of(const std::filesystem::path& path) {
-    std::string ending = path.extension().string();
-    std::transform(ending.begin(), ending.end(), ending.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return ending;
 }
 
 void warn_of_clamped(std::size_t texels, TexelFormat format, WorkReport& report) {
@@ -157,7 +151,7 @@ class CubeMap final : public BakedMap {
     }
     void write(const std::filesystem::path& path, const std::string&, WorkReport& report) const override {
         const CubeFileSummary summary =
-            lower_ending_of(path) == ".dds" ? write_dds(path, cube_, format_) : write_ktx2(path, cube_, format_);
+            lower_ending(path) == ".dds" ? write_dds(path, cube_, format_) : write_ktx2(path, cube_, format_);
         warn_of_clamped(summary.clamped_texels, format_, report);
     }
 

@@ -1,5 +1,6 @@
 #include "reflection/maps/image_sequence.h"
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 
 #include <algorithm>
 #include <cctype>
@@ -35,11 +36,6 @@ std::optional<NumberPlace> find_number_place(const std::string& name) {
     return found;
 }
 
-std::string lower(std::string text) {
-    std::transform(text.begin(), text.end(), text.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-    return text;
-}
-
 /// The number that a file's name has where the pattern has its place; the same as numbered_name would write it.
 std::optional<std::uint64_t> number_in(const std::string& file, const std::string& pattern, const NumberPlace& place) {
     const std::string before = pattern.substr(0, place.begin), after = pattern.substr(place.end);
@@ -73,7 +69,7 @@ std::vector<SequenceImage> images_of_pattern(const fs::path& pattern) {
 std::vector<SequenceImage> images_of_folder(const fs::path& folder) {
     std::vector<fs::path> files;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-        const std::string ending = lower(entry.path().extension().string());
+        const std::string ending = lower_ending(entry.path());
         for (const char* known : {".exr", ".hdr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"})
             if (ending == known && entry.is_regular_file())
                 files.push_back(entry.path());
@@ -117,7 +113,7 @@ std::string numbered_name(const std::string& pattern, std::uint64_t number) {
 bool names_a_sequence(const std::string& name) {
     std::error_code error;
     if (fs::is_regular_file(name, error))
-        return lower(fs::path(name).extension().string()) == ".txt";
+        return lower_ending(name) == ".txt";
     return fs::is_directory(name, error) || has_number_place(name);
 }
 

@@ -17,7 +17,7 @@
 //
 // What is stored is not F at the texel but what makes the interpolation between texels fit F best:
 //  - bilinear: interpolation blurs by a hat of variance h²/6 an axis; each texel is sharpened by the taps
-//    (-1, 14, -1)/12 along both axes, which undo that: a third of the error at the same size.
+//    (-1, 14, -1)/12 along both axes, which undo that: 0.4 of the error at the same size.
 //  - cubic: the coefficients of a uniform B-spline (Unser 1999), by a symmetric filter of nine taps. On a GPU four
 //    bilinear reads instead of one (Sigg and Hadwiger, GPU Gems 2, chapter 20).
 //
@@ -92,7 +92,7 @@ class ShellMap {
         float share;
     };
     Between between(float width) const;
-    /// index = floor(first_power - width^spacing_power) x shells_a_power): how shaders and vector code find it.
+    /// index = floor((first_power - width^spacing_power) x shells_a_power): how shaders and vector code find it.
     static constexpr float spacing_power = 0.2f;
     float first_power() const { return first_power_; }
     float shells_a_power() const { return shells_a_power_; }
