@@ -29,6 +29,8 @@ struct SurfaceRelief::Walk {
 
 namespace {
 
+constexpr std::size_t kBlock = 2048; ///< rays that are followed together: enough for vector code, few enough for caches
+
 glm::dvec3 triangle_normal(const ReliefShell& shell, const Prism& prism) {
     const glm::dvec3 o(shell.outer[prism.places[0]]);
     const glm::dvec3 n =
@@ -231,51 +233,66 @@ SurfaceHit SurfaceRelief::hit_of(const Walk& walk, const SurfaceRay& ray) const 
     return hit;
 }
 
-void SurfaceRelief::trace(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
-    std::vector<Walk> walks(rays.size());
-    for (std::size_t i = 0; i < rays.size(); ++i) {
-        const SurfaceRay& ray = rays[i];
-        Walk& w = walks[i];
-        w.direction = glm::dvec3(ray.direction);
-        w.origin = glm::dvec3(ray.origin) + double(ray.distance) * w.direction;
-        w.strength = double(ray.strength);
-        w.prism = ray.triangle;
-        w.entry = 3; // through a0 a1 a2 of the first tetrahedron
-        const Prism& prism = shell_.prisms[w.prism];
-        if (prism.is_solid || !(w.strength > 0) || !(glm::dot(triangle_normal(shell_, prism), w.direction) < 0))
-            w.state = Walk::State::stopped;
+SurfaceRelief::Walk SurfaceRelief::from_outside(const SurfaceRay& ray) const {
+    Walk w;
+    w.direction = glm::dvec3(ray.direction);
+    w.origin = glm::dvec3(ray.origin) + double(ray.distance) * w.direction;
+    w.strength = double(ray.strength);
+    w.prism = ray.triangle;
+    w.entry = 3; // through a0 a1 a2 of the first tetrahedron
+    const Prism& prism = shell_.prisms[w.prism];
+    if (prism.is_solid || !(w.strength > 0) || !(glm::dot(triangle_normal(shell_, prism), w.direction) < 0))
+        w.state = Walk::State::stopped;
+    return w;
+}
+
+SurfaceRelief::Walk SurfaceRelief::from_hit(const SurfaceHit& hit, const glm::vec3& direction) const {
+    Walk w;
+    w.prism = hit.triangle;
+    w.direction = glm::dvec3(direction);
+    w.strength = double(hit.strength);
+    if (!hit.found() || hit.thickness_m <= 0) { // the mesh itself hides what is behind it
+        const bool is_behind = glm::dot(hit.geometric_normal, direction) <= 0;
+        w.state = is_behind && hit.found() ? Walk::State::stopped : Walk::State::left;
+        return w;
     }
-    follow(walks);
-    for (std::size_t i = 0; i < rays.size(); ++i)
-        hits[i] = hit_of(walks[i], rays[i]);
+    const Prism& prism = shell_.prisms[w.prism];
+    glm::dvec3 weights;
+    for (std::size_t k = 0; k < 3; ++k)
+        weights[k] = double(hit.weights[prism.corners[k]]);
+    const double depth = double(hit.depth) - double(kShadowLift) * w.strength;
+    w.tetrahedron = depth <= weights.z ? 0 : depth <= weights.z + weights.y ? 1 : 2;
+    w.origin = shell_point(shell_, prism, weights, depth);
+    return w;
+}
+
+void SurfaceRelief::trace(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
+    std::vector<Walk> walks;
+    for (std::size_t first = 0; first < rays.size(); first += kBlock) {
+        const std::size_t end = std::min(rays.size(), first + kBlock);
+        walks.clear();
+        for (std::size_t i = first; i < end; ++i)
+            walks.push_back(from_outside(rays[i]));
+        follow(walks);
+        for (std::size_t i = first; i < end; ++i)
+            hits[i] = hit_of(walks[i - first], rays[i]);
+    }
 }
 
 void SurfaceRelief::occluded(std::span<const SurfaceHit> hits, std::span<const glm::vec3> to_light,
                              std::span<std::uint8_t> hidden, std::span<float> ways_out) const {
-    std::vector<Walk> walks(hits.size());
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        const SurfaceHit& hit = hits[i];
-        Walk& w = walks[i];
-        w.prism = hit.triangle;
-        w.direction = glm::dvec3(to_light[i]);
-        w.strength = double(hit.strength);
-        if (!hit.found() || hit.thickness_m <= 0) { // the mesh itself hides what is behind it
-            const bool is_behind = glm::dot(hit.geometric_normal, to_light[i]) <= 0;
-            w.state = is_behind && hit.found() ? Walk::State::stopped : Walk::State::left;
-            continue;
+    std::vector<Walk> walks;
+    for (std::size_t first = 0; first < hits.size(); first += kBlock) {
+        const std::size_t end = std::min(hits.size(), first + kBlock);
+        walks.clear();
+        for (std::size_t i = first; i < end; ++i)
+            walks.push_back(from_hit(hits[i], to_light[i]));
+        follow(walks);
+        for (std::size_t i = first; i < end; ++i) {
+            const Walk& w = walks[i - first];
+            hidden[i] = w.state == Walk::State::hit || w.state == Walk::State::stopped;
+            ways_out[i] = float(w.s);
         }
-        const Prism& prism = shell_.prisms[w.prism];
-        glm::dvec3 weights;
-        for (std::size_t k = 0; k < 3; ++k)
-            weights[k] = double(hit.weights[prism.corners[k]]);
-        const double depth = double(hit.depth) - double(kShadowLift) * w.strength;
-        w.tetrahedron = depth <= weights.z ? 0 : depth <= weights.z + weights.y ? 1 : 2;
-        w.origin = shell_point(shell_, prism, weights, depth);
-    }
-    follow(walks);
-    for (std::size_t i = 0; i < hits.size(); ++i) {
-        hidden[i] = walks[i].state == Walk::State::hit || walks[i].state == Walk::State::stopped;
-        ways_out[i] = float(walks[i].s);
     }
 }
 

@@ -11,10 +11,10 @@ uniform highp usampler2D surfacePrisms;
 
 struct SurfaceHit {
     bool found;
-    highp float distance; // from the entry; where the ray left the shell if nothing was found
-    highp uint prism;     // index of the triangle
-    highp vec3 weights;   // of the prism's own corners
-    highp vec2 uv;        // as the mesh's
+    highp float distance;  // from the entry; where the ray left the shell if nothing was found
+    highp uint prism;      // index of the triangle
+    highp vec3 weights;    // of the prism's own corners
+    highp vec2 uv;         // as the mesh's
     highp float depth;     // 0 .. strength
     highp float thickness; // of depth 1, metres; 0: the mesh itself was hit
     highp vec3 geometricNormal, shadingNormal;
@@ -106,7 +106,8 @@ SurfaceHit surfaceWalk(highp vec3 origin, highp vec3 direction, highp uint prism
     for (highp int n = 0; n < 4096; ++n) {
         ++hit.tetrahedra;
         highp uvec4 head = surfacePrism(hit.prism, 0);
-        highp vec4 uv01 = uintBitsToFloat(surfacePrism(hit.prism, 2)), uv2 = uintBitsToFloat(surfacePrism(hit.prism, 3));
+        highp vec4 uv01 = uintBitsToFloat(surfacePrism(hit.prism, 2)),
+                   uv2 = uintBitsToFloat(surfacePrism(hit.prism, 3));
         highp vec2 uvs[3] = vec2[3](uv01.xy, uv01.zw, uv2.xy);
         ivec4 corners = surfaceCorners[tetrahedron];
         highp vec3 p[4];
@@ -190,8 +191,9 @@ SurfaceHit surfaceWalk(highp vec3 origin, highp vec3 direction, highp uint prism
 SurfaceHit surfaceTrace(highp vec3 entry, highp vec3 direction, highp uint triangle, highp float strength) {
     bool solid = (surfacePrism(triangle, 0).w & 1u) != 0u;
     if (solid || !(strength > 0.0) || !(dot(surfaceTriangleNormal(triangle), direction) < 0.0))
-        return surfaceSolidHit(SurfaceHit(false, 0.0, triangle, vec3(0.0), vec2(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0, 0),
-                               entry, direction);
+        return surfaceSolidHit(
+            SurfaceHit(false, 0.0, triangle, vec3(0.0), vec2(0.0), 0.0, 0.0, vec3(0.0), vec3(0.0), 0, 0), entry,
+            direction);
     return surfaceWalk(entry, direction, triangle, 0, 3, strength);
 }
 
@@ -208,7 +210,11 @@ bool surfaceOccluded(SurfaceHit hit, highp vec3 toLight, highp float strength, o
     highp vec3 origin = vec3(0.0);
     for (int k = 0; k < 3; ++k)
         origin += (hit.weights[k] - bottom[k]) * surfacePlace(head[k], 0) + bottom[k] * surfacePlace(head[k], 1);
-    SurfaceHit behind = surfaceWalk(origin, toLight, hit.prism, rest <= 0.0 ? 0 : rest <= hit.weights.y ? 1 : 2, 4, strength);
+    SurfaceHit behind = surfaceWalk(origin, toLight, hit.prism,
+                                    rest <= 0.0             ? 0
+                                    : rest <= hit.weights.y ? 1
+                                                            : 2,
+                                    4, strength);
     wayOut = behind.distance;
     return behind.found;
 }

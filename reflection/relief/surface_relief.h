@@ -73,6 +73,8 @@ class SurfaceRelief {
     struct Walk;
     struct Wave;
     void step(Wave& wave, std::vector<Walk>& walks) const;
+    Walk from_outside(const SurfaceRay& ray) const;
+    Walk from_hit(const SurfaceHit& hit, const glm::vec3& direction) const;
     void follow(std::vector<Walk>& walks) const;
     SurfaceHit hit_of(const Walk& walk, const SurfaceRay& ray) const;
 
