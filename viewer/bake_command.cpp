@@ -1,5 +1,6 @@
 // `kokage bake`: surroundings -> light filtered by ever wider lobes, as a map that renderers look up.
 #include "common/environment/light_description.h"
+#include "common/environment/load_environment.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/stopwatch.h"
@@ -85,6 +86,8 @@ void bake_one(const BakeOptions& options, const CommandContext& context) {
     record.environment = &environment;
     record.work.stages.push_back({"reading the surroundings", loading.cpu(), loading.wall()});
     record.work.warnings = record.environment_report.warnings;
+    if (const auto skip = skipped_by_reduction(record.environment_report, environment))
+        record.work.skips.push_back(*skip);
     context.progress->throw_if_stopped();
     const std::unique_ptr<Baker> baker = baker_for(options, *map, environment, record.work, *context.progress);
     map->bake(environment, baker.get(), record.work, *context.progress);
@@ -129,10 +132,12 @@ void print_sequence(const SequenceResult& result, const std::string& output) {
         std::fprintf(stderr, "kokage: warning: %s more broken frames are left out\n",
                      count_text(result.broken - result.first_broken.size()).c_str());
     std::printf("%s: %s baked", output.c_str(), counted(result.baked, "frame", "frames").c_str());
+    const auto a_frame = [&](double seconds) { return duration_text(seconds / double(result.baked)); };
     if (result.baked > 0)
-        std::printf(" in %s (%.3g a second, CPU %s a frame)", duration_text(result.wall_seconds).c_str(),
-                    double(result.baked) / result.wall_seconds,
-                    duration_text(result.cpu_seconds / double(result.baked)).c_str());
+        std::printf(" in %s, set-up %s; %.3g a second after it; CPU a frame: reading %s, baking %s, writing %s",
+                    duration_text(result.wall_seconds).c_str(), duration_text(result.setup_wall_seconds).c_str(),
+                    result.frames_per_second(), a_frame(result.reading_cpu_seconds).c_str(),
+                    a_frame(result.baking_cpu_seconds).c_str(), a_frame(result.writing_cpu_seconds).c_str());
     if (result.kept > 0)
         std::printf(", %s kept from before", count_text(result.kept).c_str());
     std::printf("%s\n", result.broken > 0 ? (", " + count_text(result.broken) + " broken").c_str() : "");

@@ -56,6 +56,11 @@ void add_map_options(CLI::App& app, BakeOptions& o) {
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Map");
+    app.add_option("--compression", o.compression,
+                   ".exr: zip (smallest; the default of a single map), rle, or none (written and read fastest; the "
+                   "default of a video). All are lossless")
+        ->type_name("NAME")
+        ->group("Map");
 }
 
 void add_harmonics_options(CLI::App& app, BakeOptions& o) {
@@ -237,6 +242,19 @@ void complete_method(BakeOptions& o) {
     o.baker.stored_setup = o.stored;
 }
 
+void complete_compression(BakeOptions& o) {
+    const bool exr = o.map.container == MapContainer::shells || o.map.container == MapContainer::voxel_cube;
+    if (!exr && !o.compression.empty())
+        refuse("--compression", "only .exr files are compressed; leave it out");
+    if (exr && o.compression.empty())
+        o.compression = o.is_sequence ? "none" : "zip";
+    if (exr && o.compression != "zip" && o.compression != "rle" && o.compression != "none")
+        refuse("--compression", "'" + o.compression + "' is not known; give zip, rle or none");
+    o.map.compression = o.compression == "rle"   ? ExrCompression::rle
+                        : o.compression == "zip" ? ExrCompression::zip
+                                                 : ExrCompression::none;
+}
+
 void complete_outputs(BakeOptions& o) {
     o.is_sequence = names_a_sequence(o.surroundings.environment);
     const bool numbered = has_number_place(fs::path(o.output).filename().string());
@@ -293,6 +311,7 @@ void complete_bake_options(BakeOptions& o) {
     }
     complete_method(o);
     complete_outputs(o);
+    complete_compression(o);
     if (!o.is_sequence)
         check_surroundings(o.surroundings);
     else if (!o.surroundings.sun.empty() || o.surroundings.turbidity)

@@ -15,6 +15,7 @@ struct BakeOptions {
     std::filesystem::path data;
 
     std::string container, lobe, smoothness, filter = "bilinear", format = "half", roughness_scale = "solved";
+    std::string compression;
     std::optional<int> size, levels;
     std::optional<double> detail;
 

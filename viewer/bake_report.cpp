@@ -28,12 +28,19 @@ Json sequence_json(const SequenceResult& result) {
     Json broken = Json::array();
     for (const BrokenFrame& frame : result.first_broken)
         broken.push_back({{"frame", frame.number}, {"why", frame.why}});
+    const auto a_frame = [&](double seconds) { return result.baked > 0 ? seconds / double(result.baked) : 0; };
     return {{"frames", result.frames},
             {"baked", result.baked},
             {"kept", result.kept},
             {"broken", result.broken},
-            {"cpu_seconds", result.cpu_seconds},
             {"wall_seconds", result.wall_seconds},
+            {"setup_cpu_seconds", result.setup_cpu_seconds},
+            {"setup_wall_seconds", result.setup_wall_seconds},
+            {"frames_per_second", result.frames_per_second()},
+            {"cpu_seconds_a_frame",
+             {{"reading", a_frame(result.reading_cpu_seconds)},
+              {"baking", a_frame(result.baking_cpu_seconds)},
+              {"writing", a_frame(result.writing_cpu_seconds)}}},
             {"first_broken", std::move(broken)}};
 }
 
@@ -53,6 +60,7 @@ Json bake_identity(const BakeOptions& o) {
                  {"detail", o.map.texels_a_width},
                  {"filter", o.filter},
                  {"format", o.format},
+                 {"compression", o.compression},
                  {"smoothness", o.smoothness},
                  {"output", std::filesystem::path(o.output).filename().string()},
                  {"method", o.method},

@@ -57,6 +57,7 @@ struct Environment {
 struct EnvironmentReport {
     std::size_t nan_pixels = 0, infinite_pixels = 0, negative_pixels = 0;
     int first_bad_x = -1, first_bad_y = -1;     ///< in raster order, of any kind
+    int columns_before_reduction = 0;           ///< of an image that was reduced to EnvironmentLoading::max_width; or 0
     std::size_t regions_found = 0;              ///< bright regions before the limit of 64
     double energy_before = 0, energy_after = 0; ///< integral of luminance over the sphere
     std::string note;                           ///< one line a person can read; empty if there is nothing to say

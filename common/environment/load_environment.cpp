@@ -159,6 +159,7 @@ Environment environment_from_image(Image image, const std::string& name, Environ
     if (!shape.empty())
         add_warning(shape);
     if (loading.max_width > 0 && image.width > loading.max_width) {
+        report.columns_before_reduction = image.width;
         add_note("reduced from " + std::to_string(image.width) + " to " + std::to_string(loading.max_width) +
                  " columns");
         image = reduce_lat_long(std::move(image), loading.max_width);
@@ -182,6 +183,14 @@ Environment environment_from_image(Image image, const std::string& name, Environ
     for (const DistantLight& light : environment.distant_lights)
         report.energy_after += glm::dot(glm::dvec3(light.irradiance), glm::dvec3(0.2126, 0.7152, 0.0722));
     return environment;
+}
+
+std::optional<WorkReport::Skip> skipped_by_reduction(const EnvironmentReport& report, const Environment& environment) {
+    if (report.columns_before_reduction == 0)
+        return std::nullopt;
+    return WorkReport::Skip{"finer pixels of the image", "so wide images are reduced",
+                            std::to_string(report.columns_before_reduction) + " columns became " +
+                                std::to_string(environment.remainder.width)};
 }
 
 Environment load_environment(const std::filesystem::path& path, EnvironmentReport& report,

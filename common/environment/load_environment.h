@@ -2,8 +2,10 @@
 // Image files -> Environment: read, repair, reduce, split.
 #include "common/environment/environment.h"
 #include "common/environment/split_lights.h"
+#include "common/services/work_report.h"
 
 #include <filesystem>
+#include <optional>
 
 namespace kokage {
 
@@ -23,6 +25,9 @@ Environment load_environment(const std::filesystem::path& path, EnvironmentRepor
 /// The same from pixels: at least 3 channels, linear radiance. `name` is for messages and Environment::description.
 Environment environment_from_image(Image image, const std::string& name, EnvironmentReport& report,
                                    const EnvironmentLoading& loading = {});
+
+/// What was left out of an image that was wider than `max_width`, for a report; nothing if it was not.
+std::optional<WorkReport::Skip> skipped_by_reduction(const EnvironmentReport& report, const Environment& environment);
 
 /// Repairs pixels in place and counts them. The rule, per channel:
 ///   negative  -> 0 (-infinite too): compression and resampling leave small ones beside bright edges;

@@ -69,6 +69,16 @@ void save_image(const std::filesystem::path& path, const Image& image, const Ima
 /// A PNG file's bytes, to embed.
 std::vector<std::byte> encode_png(const Image& image, const ImageSaving& saving = {});
 
+/// While one lives, an image file is read or written by the thread that asks, without help: for many small files in
+/// turn, where handing parts of them to other threads costs more than it saves. Process-wide.
+class ImageFilesOnOneThread {
+  public:
+    ImageFilesOnOneThread();
+    ~ImageFilesOnOneThread();
+    ImageFilesOnOneThread(const ImageFilesOnOneThread&) = delete;
+    ImageFilesOnOneThread& operator=(const ImageFilesOnOneThread&) = delete;
+};
+
 /// The sRGB transfer curve, IEC 61966-2-1. Values outside [0,1] are extended along the curve; negative values keep
 /// their sign.
 float linear_from_srgb(float value);

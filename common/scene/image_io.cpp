@@ -5,6 +5,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 namespace kokage {
@@ -19,9 +20,22 @@ std::string one_line(std::string text, const char* otherwise) {
     return useless ? otherwise : text;
 }
 
+namespace {
+std::atomic<int> on_one_thread{0};
+}
+
+ImageFilesOnOneThread::ImageFilesOnOneThread() {
+    ++on_one_thread;
+}
+
+ImageFilesOnOneThread::~ImageFilesOnOneThread() {
+    --on_one_thread;
+}
+
 void use_our_thread_count() {
-    OIIO::attribute("threads", thread_count());
-    OIIO::attribute("exr_threads", thread_count());
+    const int threads = on_one_thread > 0 ? 1 : thread_count();
+    OIIO::attribute("threads", threads);
+    OIIO::attribute("exr_threads", threads == 1 ? -1 : threads); // 1 would be one more thread beside ours
 }
 
 Image convert_channels(Image image, int channels) {

@@ -127,4 +127,10 @@ void write_file(const fs::path& path, std::string_view contents) {
     file.commit();
 }
 
+void write_file(const fs::path& path, std::span<const unsigned char> bytes) {
+    OutputFile file(path);
+    file.write(std::as_bytes(bytes));
+    file.commit();
+}
+
 } // namespace kokage

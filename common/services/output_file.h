@@ -42,5 +42,6 @@ class OutputFile {
 
 /// Writes a whole file in one go.
 void write_file(const std::filesystem::path& path, std::string_view contents);
+void write_file(const std::filesystem::path& path, std::span<const unsigned char> bytes);
 
 } // namespace kokage

@@ -5,10 +5,20 @@
 
 namespace kokage {
 
-double process_cpu_seconds() {
+namespace {
+double seconds_of(clockid_t clock) {
     timespec time{};
-    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &time);
+    clock_gettime(clock, &time);
     return double(time.tv_sec) + 1e-9 * double(time.tv_nsec);
+}
+} // namespace
+
+double process_cpu_seconds() {
+    return seconds_of(CLOCK_PROCESS_CPUTIME_ID);
+}
+
+double thread_cpu_seconds() {
+    return seconds_of(CLOCK_THREAD_CPUTIME_ID);
 }
 
 double wall_seconds() {

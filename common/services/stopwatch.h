@@ -4,6 +4,8 @@ namespace kokage {
 
 /// User + system time of the whole process, all threads, in seconds.
 double process_cpu_seconds();
+/// User + system time of the thread that asks, in seconds.
+double thread_cpu_seconds();
 /// Monotonic wall-clock time in seconds from an arbitrary start.
 double wall_seconds();
 

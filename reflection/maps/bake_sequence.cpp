@@ -1,11 +1,15 @@
 #include "reflection/maps/bake_sequence.h"
+#include "common/scene/image_file.h"
 #include "common/services/error.h"
 #include "common/services/only_stops.h"
+#include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
 #include "reflection/maps/sequence_journal.h"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
+#include <optional>
 #include <set>
 
 namespace kokage {
@@ -44,60 +48,213 @@ void add_frame(WorkReport& total, const WorkReport& frame) {
             total.warnings.push_back(warning);
 }
 
-/// One sequence being baked: what is made by its first frame serves all.
+/// One sequence being baked, frame by frame in three steps, each of which may be at another frame.
 class SequenceBake {
   public:
-    SequenceBake(const SequenceSettings& settings, BakedMap& map, WorkReport& report)
-        : settings_(settings), map_(map), report_(report) {}
-
-    /// A frame of an earlier run tells the size that all have.
-    void note_size(const SequenceImage& kept) {
-        if (width_ == 0) {
-            WorkReport ignored;
-            const Environment environment = load(kept, ignored);
-            width_ = environment.remainder.width;
-            height_ = environment.remainder.height;
-        }
+    SequenceBake(const std::vector<SequenceImage>& images, const SequenceSettings& settings, BakedMap& map,
+                 Progress& progress)
+        : images_(images), settings_(settings), map_(map), progress_(progress), within_a_frame_(progress),
+          journal_(journal_of(settings.output), settings.identity) {
+        result_.frames = images.size();
     }
 
-    /// Throws InputError if the image is broken.
-    Environment load(const SequenceImage& image, WorkReport& of_frame) const {
-        EnvironmentLoading loading = settings_.loading;
-        loading.split = false;
-        EnvironmentReport loaded;
-        Environment environment = load_environment(image.file, loaded, loading);
-        const Image& pixels = environment.remainder;
-        if (width_ > 0 && (pixels.width != width_ || pixels.height != height_))
-            throw InputError("'" + image.file.string() + "' is " + std::to_string(pixels.width) + " x " +
-                             std::to_string(pixels.height) + ", not " + std::to_string(width_) + " x " +
-                             std::to_string(height_) + " as the frames before it");
-        environment.distant_lights = settings_.lights;
-        of_frame.warnings = loaded.warnings;
-        return environment;
-    }
-
-    void bake(const Environment& environment, const fs::path& output, WorkReport& of_frame, Progress& progress) {
-        width_ = environment.remainder.width;
-        height_ = environment.remainder.height;
-        if (!prepared_) {
-            prepared_ = true;
-            if (map_.layout().size() > 0)
-                baker_ = make_baker(map_.layout(), width_, height_, settings_.baker, report_, progress);
-        }
-        map_.bake(environment, baker_.get(), of_frame, progress);
-        progress.throw_if_stopped();
-        const Stopwatch writing;
-        map_.write(output, environment.description, of_frame);
-        of_frame.stages.push_back({"writing", writing.cpu(), writing.wall()});
+    SequenceResult run(WorkReport& report) {
+        std::optional<ImageFilesOnOneThread> alone;
+        if (map_.bytes() < kSmallFile && facts_of_image(images_.front().file).bytes < kSmallFile)
+            alone.emplace();
+        const Stopwatch watch;
+        parallel_stages(
+            kPlaces, [&](std::size_t place) { return read_next(frames_[place]); },
+            {[&](std::size_t place) { bake(frames_[place]); }, [&](std::size_t place) { finish(frames_[place]); }});
+        result_.wall_seconds = watch.wall();
+        if (result_.broken == result_.frames)
+            throw InputError("none of the " + std::to_string(result_.frames) +
+                             " images can be read: " + result_.first_broken.front().why);
+        tell_times(watch.cpu());
+        report.append(work_);
+        return result_;
     }
 
   private:
+    static constexpr std::size_t kPlaces = 4;
+    /// Below it, the threads of image libraries cost more than they save.
+    static constexpr std::uint64_t kSmallFile = std::uint64_t(8) << 20;
+
+    struct Frame {
+        enum class State { ready, kept, broken };
+        State state = State::ready;
+        std::uint64_t number = 0;
+        fs::path output;
+        ImageFacts image;
+        std::string why; ///< it is broken
+        Environment environment;
+        std::function<void()> write;
+        WorkReport report;
+    };
+
+    bool read_next(Frame& frame) {
+        if (next_ == images_.size() || ended_)
+            return false;
+        progress_.throw_if_stopped();
+        const SequenceImage& image = images_[next_++];
+        frame = {};
+        frame.number = image.number;
+        frame.output = numbered_name(settings_.output, image.number);
+        frame.image = facts_of_image(image.file);
+        if (is_kept(frame))
+            return true;
+        const double wall = wall_seconds(), cpu = thread_cpu_seconds();
+        try {
+            frame.environment = load(image.file, frame.report);
+        } catch (const InputError& error) {
+            frame.state = Frame::State::broken;
+            frame.why = error.what();
+            ended_ = settings_.stop_at_broken;
+        }
+        reading_.cpu_seconds += thread_cpu_seconds() - cpu;
+        reading_.wall_seconds += wall_seconds() - wall;
+        return true;
+    }
+
+    /// True for a frame of an earlier run; one that was set aside is put back.
+    bool is_kept(Frame& frame) {
+        const fs::path aside = outdated_name(frame.output);
+        std::error_code error;
+        if (!fs::exists(frame.output, error) && journal_.has(frame.number, frame.image, frame.output, aside))
+            fs::rename(aside, frame.output, error);
+        if (!journal_.has(frame.number, frame.image, frame.output, frame.output))
+            return false;
+        frame.state = Frame::State::kept;
+        if (width_ == 0) // it tells the size that all have
+            load(frame.image.file, frame.report);
+        return true;
+    }
+
+    /// Throws InputError if the image is broken.
+    Environment load(const fs::path& file, WorkReport& of_frame) {
+        EnvironmentLoading loading = settings_.loading;
+        loading.split = false;
+        EnvironmentReport loaded;
+        Environment environment = load_environment(file, loaded, loading);
+        const Image& pixels = environment.remainder;
+        if (width_ > 0 && (pixels.width != width_ || pixels.height != height_))
+            throw InputError("'" + file.string() + "' is " + std::to_string(pixels.width) + " x " +
+                             std::to_string(pixels.height) + ", not " + std::to_string(width_) + " x " +
+                             std::to_string(height_) + " as the frames before it");
+        width_ = pixels.width;
+        height_ = pixels.height;
+        environment.distant_lights = settings_.lights;
+        of_frame.warnings = loaded.warnings;
+        if (const auto skip = skipped_by_reduction(loaded, environment))
+            of_frame.skips.push_back(*skip);
+        return environment;
+    }
+
+    void bake(Frame& frame) {
+        if (frame.state != Frame::State::ready)
+            return;
+        progress_.throw_if_stopped();
+        if (!prepared_)
+            prepare(frame.environment.remainder);
+        map_.bake(frame.environment, baker_.get(), frame.report, within_a_frame_);
+        const Stopwatch packing;
+        frame.write = map_.packed(frame.output, frame.environment.description, frame.report);
+        frame.report.stages.push_back({"packing texels", packing.cpu(), packing.wall()});
+        frame.environment = {};
+    }
+
+    void prepare(const Image& image) {
+        const Stopwatch watch;
+        prepared_ = true;
+        if (map_.layout().size() > 0)
+            baker_ = make_baker(map_.layout(), image.width, image.height, settings_.baker, setup_, within_a_frame_);
+        result_.setup_cpu_seconds = watch.cpu();
+        result_.setup_wall_seconds = watch.wall();
+    }
+
+    void finish(Frame& frame) {
+        if (frame.state == Frame::State::kept)
+            ++result_.kept;
+        else if (frame.state == Frame::State::broken)
+            leave_out(frame);
+        else
+            write(frame);
+        progress_.advance(1);
+    }
+
+    void write(Frame& frame) {
+        const double wall = wall_seconds(), cpu = thread_cpu_seconds();
+        frame.write();
+        frame.write = nullptr;
+        std::error_code not_there;
+        fs::remove(outdated_name(frame.output), not_there);
+        journal_.add_finished(frame.number, frame.image, frame.output);
+        writing_.cpu_seconds += thread_cpu_seconds() - cpu;
+        writing_.wall_seconds += wall_seconds() - wall;
+        add_frame(work_, frame.report);
+        ++result_.baked;
+    }
+
+    void leave_out(const Frame& frame) {
+        std::string why = frame.why;
+        std::error_code error;
+        if (fs::exists(frame.output, error)) {
+            const fs::path aside = outdated_name(frame.output);
+            fs::rename(frame.output, aside, error);
+            why += error ? "; '" + frame.output.string() + "' of an earlier run is outdated, but can't be renamed (" +
+                               error.message() + ")"
+                         : "; its map of an earlier run is now '" + aside.string() + "'";
+        }
+        journal_.add_broken(frame.number, frame.image, frame.why);
+        if (settings_.stop_at_broken)
+            throw InputError("frame " + std::to_string(frame.number) + " is broken: " + why +
+                             "; finished frames stay, and the same command goes on");
+        ++result_.broken;
+        if (result_.first_broken.size() < kMostNamed)
+            result_.first_broken.push_back({frame.number, why});
+    }
+
+    /// Of all CPU time, baking is what the others leave: its stages were measured with reading and writing beside them.
+    void tell_times(double cpu_seconds) {
+        result_.reading_cpu_seconds = reading_.cpu_seconds;
+        result_.writing_cpu_seconds = writing_.cpu_seconds;
+        result_.baking_cpu_seconds =
+            std::max(0.0, cpu_seconds - result_.setup_cpu_seconds - reading_.cpu_seconds - writing_.cpu_seconds);
+        double measured = 0;
+        for (const WorkReport::Stage& stage : work_.stages)
+            measured += stage.cpu_seconds;
+        for (WorkReport::Stage& stage : work_.stages)
+            if (measured > result_.baking_cpu_seconds)
+                stage.cpu_seconds *= result_.baking_cpu_seconds / measured;
+        work_.stages.insert(work_.stages.begin(), reading_);
+        work_.stages.insert(work_.stages.begin(), setup_.stages.begin(), setup_.stages.end());
+        work_.stages.push_back(writing_);
+        setup_.stages.clear();
+        work_.append(setup_);
+    }
+
+    const std::vector<SequenceImage>& images_;
     const SequenceSettings& settings_;
     BakedMap& map_;
-    WorkReport& report_;
-    std::unique_ptr<Baker> baker_;
+    Progress& progress_;
+    OnlyStops within_a_frame_;
+    SequenceJournal journal_;
+    std::array<Frame, kPlaces> frames_;
+
+    // Of reading alone.
+    std::size_t next_ = 0;
+    bool ended_ = false;
     int width_ = 0, height_ = 0;
+    WorkReport::Stage reading_{"reading"};
+    // Of baking alone.
+    std::unique_ptr<Baker> baker_;
     bool prepared_ = false;
+    WorkReport setup_;
+    // Of writing alone.
+    WorkReport::Stage writing_{"writing"};
+    WorkReport work_; ///< of all frames that are baked
+
+    SequenceResult result_; ///< each step has its own figures in it
 };
 
 /// Maps, journal and set-up must not lie where the images do.
@@ -128,6 +285,14 @@ void make_folder_of(const std::string& output) {
 
 } // namespace
 
+double SequenceResult::frames_per_second() const {
+    return baked > 0 ? double(baked) / (wall_seconds - setup_wall_seconds) : 0;
+}
+
+fs::path outdated_name(const fs::path& map) {
+    return map.string() + ".outdated";
+}
+
 fs::path journal_of(const std::string& output_pattern) {
     const fs::path pattern(output_pattern);
     const std::string name = pattern.filename().string();
@@ -141,50 +306,8 @@ SequenceResult bake_sequence(const std::vector<SequenceImage>& images, const Seq
                              WorkReport& report, Progress& progress) {
     check_images_survive(images, settings);
     make_folder_of(settings.output);
-    SequenceJournal journal(journal_of(settings.output), settings.identity);
-    SequenceBake sequence(settings, map, report);
-    SequenceResult result;
-    result.frames = images.size();
-    OnlyStops within_a_frame(progress);
     progress.begin("baking frames", images.size());
-    for (const SequenceImage& image : images) {
-        progress.throw_if_stopped();
-        const fs::path output = numbered_name(settings.output, image.number);
-        if (journal.has(image.number, image.file, output)) {
-            sequence.note_size(image);
-            ++result.kept;
-            progress.advance(1);
-            continue;
-        }
-        const Stopwatch watch;
-        WorkReport of_frame;
-        Environment environment;
-        try {
-            environment = sequence.load(image, of_frame);
-        } catch (const InputError& error) {
-            journal.add_broken(image.number, image.file, error.what());
-            if (settings.stop_at_broken)
-                throw InputError("frame " + std::to_string(image.number) + " is broken: " + error.what() +
-                                 "; finished frames stay, and the same command goes on");
-            ++result.broken;
-            if (result.first_broken.size() < kMostNamed)
-                result.first_broken.push_back({image.number, error.what()});
-            progress.advance(1);
-            continue;
-        }
-        of_frame.stages.push_back({"reading", watch.cpu(), watch.wall()});
-        sequence.bake(environment, output, of_frame, within_a_frame);
-        journal.add_finished(image.number, image.file, output);
-        add_frame(report, of_frame);
-        result.cpu_seconds += watch.cpu();
-        result.wall_seconds += watch.wall();
-        ++result.baked;
-        progress.advance(1);
-    }
-    if (result.broken == result.frames)
-        throw InputError("none of the " + std::to_string(result.frames) +
-                         " images can be read: " + result.first_broken.front().why);
-    return result;
+    return SequenceBake(images, settings, map, progress).run(report);
 }
 
 } // namespace kokage

@@ -19,8 +19,9 @@ class BakedHarmonics final : public BakedMap {
         report.counts.push_back({"coefficients", harmonics_.coefficients.size()});
         report.counts.push_back({"lights listed", harmonics_.lights.size()});
     }
-    void write(const std::filesystem::path& path, const std::string& made_from, WorkReport&) const override {
-        write_harmonics(path, harmonics_, made_from);
+    std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
+                                 WorkReport&) const override {
+        return [=, harmonics = harmonics_] { write_harmonics(path, harmonics, made_from); };
     }
 
   private:

@@ -2,6 +2,7 @@
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
+#include "common/services/output_file.h"
 #include "reflection/maps/baked_harmonics.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
@@ -51,7 +52,7 @@ void warn_of_clamped(std::span<const glm::vec3> texels, TexelFormat format, Work
 
 class Shells final : public BakedMap {
   public:
-    explicit Shells(const MapSettings& settings) : map_(shell_settings(settings)) {}
+    explicit Shells(const MapSettings& settings) : map_(shell_settings(settings)), compression_(settings.compression) {}
     const TexelLayout& layout() const override { return map_.layout(); }
     std::uint64_t bytes() const override { return map_.bytes(); }
     void bake(const Environment& surroundings, Baker* baker, WorkReport& report, Progress& progress) override {
@@ -59,9 +60,10 @@ class Shells final : public BakedMap {
         baker->bake(surroundings, filtered_, report, progress);
         map_.set_texels(filtered_);
     }
-    void write(const std::filesystem::path& path, const std::string& made_from, WorkReport& report) const override {
+    std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
+                                 WorkReport& report) const override {
         warn_of_clamped(filtered_, map_.settings().format, report);
-        write_map(path, map_, made_from);
+        return packed_map(path, map_, made_from, compression_);
     }
 
   private:
@@ -79,13 +81,15 @@ class Shells final : public BakedMap {
         return shells;
     }
     ShellMap map_;
+    ExrCompression compression_;
     std::vector<glm::vec3> filtered_;
 };
 
 class Voxels final : public BakedMap {
   public:
     explicit Voxels(const MapSettings& settings)
-        : cube_(settings.lobe, scale_of(settings)), format_(settings.format), used_(used_texels(settings)) {
+        : cube_(settings.lobe, scale_of(settings)), format_(settings.format), compression_(settings.compression),
+          used_(used_texels(settings)) {
         layout_.kind = cube_.layout().kind;
         for (std::size_t texel : used_) {
             layout_.directions.push_back(cube_.layout().directions[texel]);
@@ -102,9 +106,10 @@ class Voxels final : public BakedMap {
             all[used_[i]] = filtered_[i];
         cube_.set_texels(all);
     }
-    void write(const std::filesystem::path& path, const std::string& made_from, WorkReport& report) const override {
+    std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
+                                 WorkReport& report) const override {
         warn_of_clamped(filtered_, format_, report);
-        write_map(path, cube_, format_, made_from);
+        return packed_map(path, cube_, format_, made_from, compression_);
     }
 
   private:
@@ -128,6 +133,7 @@ class Voxels final : public BakedMap {
     }
     VoxelCube cube_;
     TexelFormat format_;
+    ExrCompression compression_;
     std::vector<std::size_t> used_;
     TexelLayout layout_;
     std::vector<glm::vec3> filtered_;
@@ -149,10 +155,12 @@ class CubeMap final : public BakedMap {
     void bake(const Environment& surroundings, Baker* baker, WorkReport& report, Progress& progress) override {
         bake_cube(cube_, surroundings, baker, report, progress);
     }
-    void write(const std::filesystem::path& path, const std::string&, WorkReport& report) const override {
-        const CubeFileSummary summary =
-            lower_ending(path) == ".dds" ? write_dds(path, cube_, format_) : write_ktx2(path, cube_, format_);
-        warn_of_clamped(summary.clamped_texels, format_, report);
+    std::function<void()> packed(const std::filesystem::path& path, const std::string&,
+                                 WorkReport& report) const override {
+        const auto made_by = lower_ending(path) == ".dds" ? dds_bytes : ktx2_bytes;
+        CubeFileBytes made = made_by(cube_, format_, path.string());
+        warn_of_clamped(made.summary.clamped_texels, format_, report);
+        return [path, bytes = std::move(made.bytes)] { write_file(path, std::span(bytes)); };
     }
 
   private:

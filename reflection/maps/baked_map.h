@@ -1,6 +1,7 @@
 #pragma once
 // What is baked into and written to a file: shells, the voxel cube, a prefiltered cube map or spherical harmonics,
 // alike to who bakes them.
+#include "reflection/maps/exr_notes.h"
 #include "reflection/maps/harmonics.h"
 #include "reflection/maps/make_baker.h"
 #include "reflection/maps/roughness_scale.h"
@@ -8,6 +9,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -46,6 +48,7 @@ struct MapSettings {
     double texels_a_width = ShellSettings{}.texels_a_width; ///< shells
     TexelFilter filter = TexelFilter::bilinear;             ///< shells
     TexelFormat format = TexelFormat::half_rgb;
+    ExrCompression compression = ExrCompression::zip; ///< of .exr files
     /// Only this part is baked, at the resolution that it needs. Empty = all: shells from Λ = 1 (roughness 1) to Λ =
     /// 5000, the cube's every voxel, cube maps from the image itself to roughness 1.
     std::optional<SmoothnessRange> smoothness{};
@@ -67,10 +70,14 @@ class BakedMap {
     /// Fills the texels. `baker` was made for layout(); null if that is empty.
     virtual void bake(const Environment& surroundings, Baker* baker, WorkReport& report,
                       Progress& progress = silent_progress()) = 0;
-    /// Whole or not at all; the ending of `path` says as what. `made_from`: a line about the surroundings, kept where
-    /// the file has a place for it. Adds a warning to the report for texels that the format can't hold. Throws
-    /// InputError.
-    virtual void write(const std::filesystem::path& path, const std::string& made_from, WorkReport& report) const = 0;
+    /// Copies what the file needs: the function that is returned writes it, whole or not at all, while the map may be
+    /// baked anew. The ending of `path` says as what. `made_from`: a line about the surroundings, kept where the file
+    /// has a place for it. Adds a warning to the report for texels that the format can't hold. Both throw InputError.
+    virtual std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
+                                         WorkReport& report) const = 0;
+    void write(const std::filesystem::path& path, const std::string& made_from, WorkReport& report) const {
+        packed(path, made_from, report)();
+    }
 };
 
 /// Throws InputError for settings that make no map.

@@ -15,6 +15,7 @@
 //          floats, so that they read back with a float's precision; the image itself is -1.
 //
 // A file of another program has no such notes: it is read as GGX with even roughness, and the result says so.
+#include "common/services/uninitialized_vector.h"
 #include "reflection/maps/prefiltered_cube.h"
 #include "reflection/maps/texel_format.h"
 
@@ -38,6 +39,14 @@ CubeFileSummary write_ktx2(const std::filesystem::path& path, const PrefilteredC
 /// DDS with a DX10 header: DXGI_FORMAT_R16G16B16A16_FLOAT or R32G32B32A32_FLOAT, each face with all its levels.
 /// Shared exponents are refused (few readers know them), and so are more than 8 levels.
 CubeFileSummary write_dds(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format);
+
+/// What the writers above write; `name` begins the messages.
+struct CubeFileBytes {
+    UninitializedVector<unsigned char> bytes;
+    CubeFileSummary summary;
+};
+CubeFileBytes ktx2_bytes(const PrefilteredCube& cube, TexelFormat format, const std::string& name);
+CubeFileBytes dds_bytes(const PrefilteredCube& cube, TexelFormat format, const std::string& name);
 
 struct CubeFile {
     PrefilteredCube cube;

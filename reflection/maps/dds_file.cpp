@@ -157,14 +157,13 @@ class DdsReader {
 
 } // namespace
 
-CubeFileSummary write_dds(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format) {
-    check_levels(cube, path.string());
-    check_finite(cube, path.string());
+CubeFileBytes dds_bytes(const PrefilteredCube& cube, TexelFormat format, const std::string& name) {
+    check_levels(cube, name);
+    check_finite(cube, name);
     if (format == TexelFormat::shared_exponent)
-        throw InputError(path.string() +
-                         ": DDS is written with half floats or floats; for shared exponents take .ktx2");
+        throw InputError(name + ": DDS is written with half floats or floats; for shared exponents take .ktx2");
     if (cube.levels.size() > kMostLevels)
-        throw InputError(path.string() + ": a DDS file has room for the roughness of " + std::to_string(kMostLevels) +
+        throw InputError(name + ": a DDS file has room for the roughness of " + std::to_string(kMostLevels) +
                          " levels, not of " + std::to_string(cube.levels.size()) + "; take .ktx2, or fewer levels");
     const std::size_t size = std::size_t(cube.levels[0].size), each = file_texel_bytes(format);
     ByteWriter notes;
@@ -208,10 +207,13 @@ CubeFileSummary write_dds(const std::filesystem::path& path, const PrefilteredCu
         head.u32(number);
     std::copy(head.bytes.begin(), head.bytes.end(), bytes.begin());
 
-    OutputFile file(path);
-    file.write(std::as_bytes(std::span<const unsigned char>(bytes.data(), bytes.size())));
-    file.commit();
-    return summary;
+    return {std::move(bytes), summary};
+}
+
+CubeFileSummary write_dds(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format) {
+    const CubeFileBytes made = dds_bytes(cube, format, path.string());
+    write_file(path, std::span(made.bytes));
+    return made.summary;
 }
 
 CubeFile read_dds(const std::filesystem::path& path) {

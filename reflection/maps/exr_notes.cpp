@@ -7,6 +7,7 @@
 #include "common/services/output_file.h"
 
 #include <OpenImageIO/imageio.h>
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -26,13 +27,13 @@ constexpr const char* kPrefix = "kokage:";
 }
 
 /// Of all notes but the checksum itself, then of the pixels.
-std::string checksum_of(const ExrNotes& notes, const Image& image) {
+std::string checksum_of(const ExrNotes& notes, const ExrPixels& pixels) {
     std::string text;
     for (const auto& [key, value] : notes)
         if (key != "checksum")
             text += key + '=' + value + '\n';
     const std::uint64_t sum =
-        byte_hash(std::as_bytes(std::span(image.pixels)), byte_hash(std::as_bytes(std::span(text))));
+        byte_hash(std::span(pixels.bytes), byte_hash(std::as_bytes(std::span(text))));
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(sum));
     return digits.data();
@@ -58,21 +59,33 @@ std::unique_ptr<OIIO::ImageInput> open(const std::filesystem::path& path) {
 
 } // namespace
 
-void write_noted_exr(const std::filesystem::path& path, const Image& image, bool halves, const ExrNotes& notes) {
-    OIIO::ImageSpec spec(image.width, image.height, 3, halves ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT);
+ExrPixels exr_pixels(const Image& image, bool halves) {
+    const TexelFormat format = halves ? TexelFormat::half_rgb : TexelFormat::float_rgb;
+    const auto* texels = reinterpret_cast<const glm::vec3*>(image.pixels.data());
+    static_assert(sizeof(glm::vec3) == 3 * sizeof(float));
+    return {image.width, image.height, halves, packed_texels({texels, image.pixels.size() / 3}, format), 0};
+}
+
+void write_noted_exr(const std::filesystem::path& path, const ExrPixels& pixels, const ExrNotes& notes,
+                     ExrCompression compression) {
+    const OIIO::TypeDesc type = pixels.halves ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT;
+    OIIO::ImageSpec spec(pixels.width, pixels.height, 3, type);
+    spec.tile_width = spec.tile_height = pixels.tile;
     spec.attribute("oiio:ColorSpace", "Linear");
-    spec.attribute("compression", "zip");
+    spec.attribute("compression", compression == ExrCompression::zip   ? "zip"
+                                  : compression == ExrCompression::rle ? "rle"
+                                                                       : "none");
     for (const auto& [key, value] : notes)
         spec.attribute(kPrefix + key, value);
-    spec.attribute(std::string(kPrefix) + "checksum", checksum_of(notes, image));
+    spec.attribute(std::string(kPrefix) + "checksum", checksum_of(notes, pixels));
     use_our_thread_count();
     OutputFile file(path);
     const auto output = OIIO::ImageOutput::create("exr");
     constexpr const char* disk = "the system did not take it (is the disk full?)";
     if (!output)
         fail_to_write(path, one_line(OIIO::geterror(), disk));
-    if (!output->open(file.temporary_path().string(), spec) ||
-        !output->write_image(OIIO::TypeDesc::FLOAT, image.pixels.data()) || !output->close())
+    if (!output->open(file.temporary_path().string(), spec) || !output->write_image(type, pixels.bytes.data()) ||
+        !output->close())
         fail_to_write(path, one_line(output->geterror(), disk));
     file.commit();
 }
@@ -100,13 +113,21 @@ ExrHeader read_exr_header(const std::filesystem::path& path) {
 
 Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header) {
     const auto input = open(path);
-    Image image(header.width, header.height, 3);
-    if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::FLOAT, image.pixels.data()))
+    ExrPixels stored{header.width, header.height, input->spec().format == OIIO::TypeDesc::HALF, {}, 0};
+    const TexelFormat format = stored.halves ? TexelFormat::half_rgb : TexelFormat::float_rgb;
+    stored.bytes.resize(pixels * texel_bytes(format));
+    if (!input->read_image(0, 0, 0, 3, stored.halves ? OIIO::TypeDesc::HALF : OIIO::TypeDesc::FLOAT,
+                           stored.bytes.data()))
         fail_to_read(path, "it is damaged or cut off (" + one_line(input->geterror(), "its pixels can't be decoded") +
                                "); bake it again");
     const auto noted = header.notes.find("checksum");
-    if (noted == header.notes.end() || noted->second != checksum_of(header.notes, image))
+    if (noted == header.notes.end() || noted->second != checksum_of(header.notes, stored))
         fail_to_read(path, "its content is not what was written (the checksum differs); bake it again");
+    Image image(header.width, header.height, 3);
+    for (std::size_t i = 0; i < pixels; ++i) {
+        const glm::vec3 texel = unpacked_texel(stored.bytes.data() + i * texel_bytes(format), format);
+        std::copy_n(&texel.x, 3, image.pixels.begin() + std::ptrdiff_t(3 * i));
+    }
     return image;
 }
 

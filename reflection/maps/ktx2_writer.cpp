@@ -108,10 +108,10 @@ std::size_t write_key_values(ByteWriter& out, const std::string& lobe, const std
 
 } // namespace
 
-CubeFileSummary write_ktx2(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format) {
+CubeFileBytes ktx2_bytes(const PrefilteredCube& cube, TexelFormat format, const std::string& name) {
     using namespace ktx2;
-    check_levels(cube, path.string());
-    check_finite(cube, path.string());
+    check_levels(cube, name);
+    check_finite(cube, name);
     const Format& is =
         *std::find_if(kFormats.begin(), kFormats.end(), [&](const auto& f) { return f.format == format; });
     const std::size_t levels = cube.levels.size(), size = std::size_t(cube.levels[0].size);
@@ -167,10 +167,13 @@ CubeFileSummary write_ktx2(const std::filesystem::path& path, const PrefilteredC
         checksum_text(lobe, parameters, std::span<const unsigned char>(bytes.data(), end).subspan(levels_at));
     std::memcpy(bytes.data() + key_values_at + digits, sum.data(), sum.size());
 
-    OutputFile file(path);
-    file.write(std::as_bytes(std::span<const unsigned char>(bytes.data(), bytes.size())));
-    file.commit();
-    return summary;
+    return {std::move(bytes), summary};
+}
+
+CubeFileSummary write_ktx2(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format) {
+    const CubeFileBytes made = ktx2_bytes(cube, format, path.string());
+    write_file(path, std::span(made.bytes));
+    return made.summary;
 }
 
 } // namespace kokage

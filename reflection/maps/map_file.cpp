@@ -6,11 +6,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace kokage {
 namespace {
 
-constexpr const char* kVersion = "1";
+constexpr const char* kVersion = "2";
 constexpr const char *kShells = "shells", *kCube = "voxel cube";
 
 const char* filter_name(TexelFilter filter) {
@@ -26,13 +27,26 @@ std::string shells_text(std::span<const ShellMap::Shell> shells, const ShellAtla
     return text;
 }
 
-void check_finite(const Image& image, const std::filesystem::path& path) {
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-        if (!std::isfinite(image.pixels[i])) {
-            const std::size_t pixel = i / 3, width = std::size_t(image.width);
-            throw InputError("cannot write map '" + path.string() + "': its pixel (" + std::to_string(pixel % width) +
-                             ", " + std::to_string(pixel / width) + ") is not finite; bake the map again");
-        }
+void check_finite(std::span<const float> values, int width, const std::filesystem::path& path) {
+    bool finite = true; // without a way out of the loop, it is done by vectors
+    for (const float value : values)
+        finite &= std::abs(value) <= std::numeric_limits<float>::max();
+    if (finite)
+        return;
+    const auto first = std::find_if_not(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
+    const std::size_t pixel = std::size_t(first - values.begin()) / 3;
+    throw InputError("cannot write map '" + path.string() + "': its pixel (" +
+                     std::to_string(pixel % std::size_t(width)) + ", " + std::to_string(pixel / std::size_t(width)) +
+                     ") is not finite; bake the map again");
+}
+
+std::function<void()> writing(const std::filesystem::path& path, ExrPixels pixels, ExrNotes notes,
+                              const std::string& made_from, ExrCompression compression) {
+    if (!made_from.empty())
+        notes["made_from"] = made_from;
+    return [=, pixels = std::move(pixels), notes = std::move(notes)] {
+        write_noted_exr(path, pixels, notes, compression);
+    };
 }
 
 /// What a map's notes say, checked.
@@ -125,11 +139,12 @@ VoxelCube read_cube(const ExrHeader& header, const NotesReader& notes, const std
 
 } // namespace
 
-void write_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from) {
+std::function<void()> packed_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from,
+                                 ExrCompression compression) {
     const ShellSettings& settings = map.settings();
     const ShellAtlas atlas = shell_atlas(map.shells(), map.border());
     const Image image = atlas_image(map, atlas);
-    check_finite(image, path);
+    check_finite(image.pixels, image.width, path);
     ExrNotes notes = {{"map", kShells},
                       {"layout_version", kVersion},
                       {"lobe", std::string(lobe_kind_name(settings.kind))},
@@ -140,22 +155,17 @@ void write_map(const std::filesystem::path& path, const ShellMap& map, const std
                       {"shell_ratio", number_text(settings.shell_ratio)},
                       {"texels_a_width", number_text(settings.texels_a_width)},
                       {"shells", shells_text(map.shells(), atlas)}};
-    if (!made_from.empty())
-        notes["made_from"] = made_from;
-    write_noted_exr(path, image, settings.format != TexelFormat::float_rgb, notes);
+    return writing(path, exr_pixels(image, settings.format != TexelFormat::float_rgb), std::move(notes), made_from,
+                   compression);
 }
 
-void write_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format,
-               const std::string& made_from) {
+std::function<void()> packed_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format,
+                                 const std::string& made_from, ExrCompression compression) {
     if (format == TexelFormat::shared_exponent)
         throw InputError("cannot write map '" + path.string() + "': voxels are kept as halves or floats");
-    Image image(cube.size(), cube.size() * cube.size(), 3);
-    const auto packed = packed_texels(cube.voxels(), format);
-    for (std::size_t i = 0; i < cube.voxels().size(); ++i) {
-        const glm::vec3 colour = unpacked_texel(packed.data() + i * texel_bytes(format), format);
-        std::copy_n(&colour.x, 3, image.pixels.begin() + std::ptrdiff_t(3 * i));
-    }
-    check_finite(image, path);
+    check_finite({&cube.voxels().front().x, 3 * cube.voxels().size()}, cube.size(), path);
+    ExrPixels pixels{cube.size(), cube.size() * cube.size(), format == TexelFormat::half_rgb,
+                     packed_texels(cube.voxels(), format), cube.size()};
     ExrNotes notes = {{"map", kCube},
                       {"layout_version", kVersion},
                       {"lobe", std::string(lobe_kind_name(cube.layout().kind))},
@@ -163,9 +173,17 @@ void write_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFo
                       {"cube_size", std::to_string(cube.scale().cube_size())},
                       {"levels", number_text(cube.scale().levels())},
                       {"u", number_text(cube.scale().u())}};
-    if (!made_from.empty())
-        notes["made_from"] = made_from;
-    write_noted_exr(path, image, format == TexelFormat::half_rgb, notes);
+    return writing(path, std::move(pixels), std::move(notes), made_from, compression);
+}
+
+void write_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from,
+               ExrCompression compression) {
+    packed_map(path, map, made_from, compression)();
+}
+
+void write_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format,
+               const std::string& made_from, ExrCompression compression) {
+    packed_map(path, cube, format, made_from, compression)();
 }
 
 MapFile read_map(const std::filesystem::path& path) {

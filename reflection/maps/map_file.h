@@ -2,10 +2,10 @@
 // Voxel cubes and shells as OpenEXR files, with everything in their headers that is needed to read them back.
 //
 // Pixels: shells as shell_atlas.h lays them out; a cube of n³ voxels as n slices of n x n, z = 0 at the top: n wide,
-// n² high, x to the right, y downwards. R, G, B, halves or floats, ZIP-compressed (lossless). Text attributes:
+// n² high, x to the right, y downwards, each slice a tile of the file. R, G, B, halves or floats. Text attributes:
 //
 //   both    kokage:map             "shells" or "voxel cube"
-//           kokage:layout_version  1
+//           kokage:layout_version  2
 //           kokage:lobe            "phong" or "ggx"
 //           kokage:format          texel_format_name; values of a shared exponent are stored as halves, which hold them
 //           kokage:made_from       one line about the surroundings; may be missing
@@ -14,10 +14,12 @@
 //                                  ShellSettings; they fix the layout
 //           kokage:shells          for other programs: "parameter width resolution x y" of each shell, ';' between
 //   cube    kokage:cube_size, kokage:levels, kokage:u     RoughnessScale
+#include "reflection/maps/exr_notes.h"
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/voxel_cube.h"
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <variant>
 
@@ -25,10 +27,18 @@ namespace kokage {
 
 /// Whole or not at all (OutputFile). Throws InputError for values that are not finite, and where it can't be written.
 /// Reading back gives the same texels, bit by bit.
-void write_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from = "");
+void write_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from = "",
+               ExrCompression compression = ExrCompression::zip);
 /// `format`: half_rgb or float_rgb (float: the same voxels bit by bit; half: rounded).
 void write_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format = TexelFormat::half_rgb,
-               const std::string& made_from = "");
+               const std::string& made_from = "", ExrCompression compression = ExrCompression::zip);
+
+/// The same in two steps: what the file needs is copied, and the function that is returned writes it, while the map may
+/// be changed. Either step throws InputError.
+std::function<void()> packed_map(const std::filesystem::path& path, const ShellMap& map, const std::string& made_from,
+                                 ExrCompression compression);
+std::function<void()> packed_map(const std::filesystem::path& path, const VoxelCube& cube, TexelFormat format,
+                                 const std::string& made_from, ExrCompression compression);
 
 struct MapFile {
     std::variant<ShellMap, VoxelCube> map;

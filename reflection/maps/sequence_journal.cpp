@@ -24,13 +24,9 @@ std::uint64_t bytes_of(const fs::path& file) {
 }
 
 /// The facts of a finished frame; two that differ in one differ in their hash.
-Json facts_of(std::uint64_t frame, const fs::path& input, const fs::path& output) {
-    return {{"frame", frame},
-            {"input", input.string()},
-            {"input_bytes", bytes_of(input)},
-            {"input_time", time_of(input)},
-            {"file", output.filename().string()},
-            {"bytes", bytes_of(output)}};
+Json facts_of(std::uint64_t frame, const ImageFacts& image, const fs::path& output, std::uint64_t bytes) {
+    return {{"frame", frame},           {"input", image.file.string()},       {"input_bytes", image.bytes},
+            {"input_time", image.time}, {"file", output.filename().string()}, {"bytes", bytes}};
 }
 
 std::string line_of(const Json& json) {
@@ -42,6 +38,10 @@ std::uint64_t hash_of(const std::string& line) {
 }
 
 } // namespace
+
+ImageFacts facts_of_image(const fs::path& file) {
+    return {file, bytes_of(file), time_of(file)};
+}
 
 SequenceJournal::SequenceJournal(const fs::path& path, const std::string& identity) : path_(path) {
     std::error_code ignored;
@@ -85,20 +85,19 @@ void SequenceJournal::read(const std::string& identity) {
     fs::resize_file(path_, whole);
 }
 
-bool SequenceJournal::has(std::uint64_t frame, const fs::path& input, const fs::path& output) const {
+bool SequenceJournal::has(std::uint64_t frame, const ImageFacts& image, const fs::path& output,
+                          const fs::path& file) const {
     const auto found = finished_.find(frame);
-    return found != finished_.end() && bytes_of(output) > 0 &&
-           found->second == hash_of(line_of(facts_of(frame, input, output)));
+    const std::uint64_t bytes = found == finished_.end() ? 0 : bytes_of(file);
+    return bytes > 0 && found->second == hash_of(line_of(facts_of(frame, image, output, bytes)));
 }
 
-void SequenceJournal::add_finished(std::uint64_t frame, const fs::path& input, const fs::path& output) {
-    const std::string line = line_of(facts_of(frame, input, output));
-    finished_[frame] = hash_of(line);
-    append(line);
+void SequenceJournal::add_finished(std::uint64_t frame, const ImageFacts& image, const fs::path& output) {
+    append(line_of(facts_of(frame, image, output, bytes_of(output))));
 }
 
-void SequenceJournal::add_broken(std::uint64_t frame, const fs::path& input, const std::string& why) {
-    append(line_of({{"frame", frame}, {"input", input.string()}, {"broken", why}}));
+void SequenceJournal::add_broken(std::uint64_t frame, const ImageFacts& image, const std::string& why) {
+    append(line_of({{"frame", frame}, {"input", image.file.string()}, {"broken", why}}));
 }
 
 void SequenceJournal::append(const std::string& line) {

@@ -33,7 +33,7 @@ void measure_hdr(const ExperimentContext& context);
 void measure_containers(const ExperimentContext& context);
 /// "teapot": the paper's table 4 (reflection_teapot.h).
 void measure_teapot(const ExperimentContext& context);
-/// "video": frames a second of a cube of 64, all methods.
+/// "video": frames a second of a cube of 64: from file to file ("spectral-files"), and of all methods by themselves.
 void measure_video(const ExperimentContext& context);
 /// "skips": what baking only smoothness 0.3 to 0.6 saves.
 void measure_skips(const ExperimentContext& context);

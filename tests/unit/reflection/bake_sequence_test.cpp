@@ -1,12 +1,15 @@
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
+#include "common/services/parallel.h"
 #include "reflection/maps/bake_sequence.h"
 #include "reflection/maps/map_file.h"
 #include "tests/support/temporary_folder.h"
 
 #include <algorithm>
+#include <atomic>
 #include <chrono>
 #include <fstream>
+#include <functional>
 #include <gtest/gtest.h>
 
 namespace kokage {
@@ -57,15 +60,46 @@ struct Frames {
     }
 };
 
+std::size_t files_in(const fs::path& folder) {
+    return std::size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
 /// Wants to stop after so many frames.
 class StopAfter : public Progress {
   public:
     explicit StopAfter(std::size_t frames) : left_(frames) {}
-    void advance(std::size_t steps) override { left_ -= std::min(left_, steps); }
+    void advance(std::size_t) override {
+        if (left_ > 0)
+            --left_;
+    }
     bool stop_requested() const override { return left_ == 0; }
 
   private:
-    std::size_t left_;
+    std::atomic<std::size_t> left_;
+};
+
+/// Does something when it is asked for the n-th time whether to stop: with one thread, the first frame is read between
+/// the first and the second time.
+class AtQuestion : public Progress {
+  public:
+    AtQuestion(int number, std::function<void()> act) : left_(number), act_(std::move(act)) {}
+    bool stop_requested() const override {
+        if (--left_ == 0)
+            act_();
+        return false;
+    }
+
+  private:
+    mutable std::atomic<int> left_;
+    std::function<void()> act_;
+};
+
+class WithThreads {
+  public:
+    explicit WithThreads(int count) { set_thread_count(count); }
+    ~WithThreads() { set_thread_count(0); }
+    WithThreads(const WithThreads&) = delete;
+    WithThreads& operator=(const WithThreads&) = delete;
 };
 
 TEST(BakeSequence, EveryFrameIsWhatItWouldBeAlone) {
@@ -89,16 +123,129 @@ TEST(BakeSequence, AStoppedRunKeepsItsFramesAndGoesOn) {
     const Frames frames;
     StopAfter stop(3);
     EXPECT_THROW(frames.run(stop), Stopped);
+    // Those that were baked when the wish came are written, too; no half file is left.
+    const std::size_t files = files_in(frames.folder / "maps");
     EXPECT_TRUE(fs::exists(frames.map_file(3)));
-    EXPECT_FALSE(fs::exists(frames.map_file(4)));
+    EXPECT_FALSE(fs::exists(frames.map_file(8)));
     const auto before = fs::last_write_time(frames.map_file(2));
     const SequenceResult result = frames.run();
-    EXPECT_EQ(result.kept, 3u);
-    EXPECT_EQ(result.baked, 5u);
+    EXPECT_EQ(result.kept + 1, files) << "each has its line in the journal, which is a file, too";
+    EXPECT_EQ(result.kept + result.baked, 8u);
     EXPECT_EQ(fs::last_write_time(frames.map_file(2)), before) << "finished frames are not touched";
     const SequenceResult again = frames.run();
     EXPECT_EQ(again.kept, 8u);
     EXPECT_EQ(again.baked, 0u);
+}
+
+TEST(BakeSequence, SameBitsWithAnyNumberOfThreads) {
+    std::vector<std::vector<glm::vec3>> voxels;
+    for (const int threads : {1, 2, 4}) {
+        const WithThreads with(threads);
+        Frames frames({5});
+        frames.settings.baker.method = BakeMethod::spectral;
+        EXPECT_EQ(frames.run().baked, 7u);
+        for (int i : {1, 4, 8})
+            voxels.push_back(voxels_of(frames.map_file(i)));
+    }
+    for (std::size_t i = 3; i < voxels.size(); ++i)
+        EXPECT_TRUE(voxels[i] == voxels[i % 3]) << i;
+}
+
+TEST(BakeSequence, AnImageThatChangesWhileItIsBakedIsBakedAgain) {
+    const WithThreads one(1);
+    const Frames frames;
+    const std::vector<glm::vec3> before = [&] {
+        const Frames same;
+        same.run();
+        return voxels_of(same.map_file(1));
+    }();
+    AtQuestion change(2, [&] {
+        write_frame(frames.folder / "in_01.exr", 32, 0.9f);
+        fs::last_write_time(frames.folder / "in_01.exr", fs::file_time_type::clock::now() + std::chrono::seconds(5));
+    });
+    EXPECT_EQ(frames.run(change).baked, 8u);
+    EXPECT_TRUE(voxels_of(frames.map_file(1)) == before) << "it was read before it changed";
+    const SequenceResult again = frames.run();
+    EXPECT_EQ(again.baked, 1u);
+    EXPECT_EQ(again.kept, 7u);
+    EXPECT_FALSE(voxels_of(frames.map_file(1)) == before);
+}
+
+TEST(BakeSequence, AMapWhoseImageHasBecomeBrokenIsSetAsideAndTakenBackWithItsImage) {
+    const Frames frames;
+    frames.run();
+    const std::vector<glm::vec3> map = voxels_of(frames.map_file(4));
+    const fs::path image = frames.folder / "in_04.exr", hidden = frames.folder / "elsewhere";
+    fs::rename(image, hidden);
+    std::ofstream(image) << "no picture";
+    const SequenceResult result = frames.run();
+    EXPECT_EQ(result.broken, 1u);
+    EXPECT_EQ(result.kept, 7u);
+    EXPECT_FALSE(fs::exists(frames.map_file(4)));
+    EXPECT_EQ(outdated_name(frames.map_file(4)).filename(), "m004.exr.outdated");
+    EXPECT_TRUE(fs::exists(outdated_name(frames.map_file(4))));
+    ASSERT_EQ(result.first_broken.size(), 1u);
+    EXPECT_NE(result.first_broken[0].why.find("m004.exr.outdated"), std::string::npos) << result.first_broken[0].why;
+    EXPECT_EQ(frames.run().broken, 1u) << "nothing new happens to it";
+    EXPECT_TRUE(fs::exists(outdated_name(frames.map_file(4))));
+
+    fs::rename(hidden, image); // with its old time
+    EXPECT_EQ(frames.run().kept, 8u);
+    EXPECT_TRUE(voxels_of(frames.map_file(4)) == map);
+    EXPECT_FALSE(fs::exists(outdated_name(frames.map_file(4))));
+
+    std::ofstream(image) << "no picture";
+    frames.run();
+    write_frame(image, 32, 0.7f); // another one
+    EXPECT_EQ(frames.run().baked, 1u);
+    EXPECT_TRUE(fs::exists(frames.map_file(4)));
+    EXPECT_FALSE(fs::exists(outdated_name(frames.map_file(4)))) << "made up for";
+}
+
+TEST(BakeSequence, FramesBeforeOneThatCantBeWrittenAreFinished) {
+    const Frames frames;
+    fs::create_directories(frames.map_file(5));
+    EXPECT_THROW(frames.run(), InputError);
+    EXPECT_TRUE(fs::exists(frames.map_file(4)));
+    EXPECT_FALSE(fs::exists(frames.map_file(6)));
+    EXPECT_EQ(files_in(frames.folder / "maps"), 6u) << "four maps, the folder and the journal";
+    fs::remove(frames.map_file(5));
+    EXPECT_EQ(frames.run().kept, 4u);
+}
+
+TEST(BakeSequence, TellsTheTimesOfItsStepsAndThatImagesWereReducedOnce) {
+    Frames frames;
+    for (int i = 1; i <= 8; ++i) {
+        Image wide(4098, 4, 3);
+        std::fill(wide.pixels.begin(), wide.pixels.end(), 0.1f * float(i));
+        save_image(frames.folder / ("in_0" + std::to_string(i) + ".exr"), wide);
+    }
+    const std::unique_ptr<BakedMap> map = make_map(small_cube());
+    WorkReport report;
+    const SequenceResult result = bake_sequence(image_sequence(frames.pattern()), frames.settings, *map, report);
+    EXPECT_EQ(result.baked, 8u);
+    EXPECT_GT(result.reading_cpu_seconds, 0);
+    EXPECT_GT(result.baking_cpu_seconds, 0);
+    EXPECT_GT(result.writing_cpu_seconds, 0);
+    EXPECT_GT(result.setup_cpu_seconds, 0);
+    EXPECT_GT(result.frames_per_second(), 8 / result.wall_seconds);
+    EXPECT_EQ(std::count_if(report.skips.begin(), report.skips.end(),
+                            [](const auto& skip) { return skip.saved == "4098 columns became 2049"; }),
+              1);
+    ASSERT_GT(report.stages.size(), 3u);
+    EXPECT_EQ(report.stages.back().name, "writing");
+    double baking = 0;
+    for (const WorkReport::Stage& stage : report.stages)
+        EXPECT_EQ(std::count_if(report.stages.begin(), report.stages.end(),
+                                [&](const auto& other) { return other.name == stage.name; }),
+                  1)
+            << stage.name;
+    const auto reading = std::find_if(report.stages.begin(), report.stages.end(),
+                                      [](const auto& stage) { return stage.name == "reading"; });
+    ASSERT_NE(reading, report.stages.end());
+    for (auto stage = reading + 1; stage + 1 != report.stages.end(); ++stage)
+        baking += stage->cpu_seconds;
+    EXPECT_LE(baking, result.baking_cpu_seconds * 1.0001) << "parts are no more than the whole";
 }
 
 TEST(BakeSequence, AChangedImageOrALostMapIsBakedAgain) {

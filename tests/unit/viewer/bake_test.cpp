@@ -198,7 +198,9 @@ TEST(Bake, StrangeImagesGiveARightMapOrOneClearLine) {
     Image wide(16384, 2, 3);
     std::fill(wide.pixels.begin(), wide.pixels.end(), 0.5f);
     wide.at(5, 0)[0] = 0.6f;
-    EXPECT_EQ(bake(wide, "wide.exr", {}).status, 0);
+    const ProgramRun reduced = bake(wide, "wide.exr", {});
+    EXPECT_EQ(reduced.status, 0);
+    EXPECT_NE(reduced.output.find("16384 columns became 4096"), std::string::npos) << reduced.output;
     EXPECT_NEAR(value({0, 1, 0}).y, 0.5f, 1e-2f);
 }
 
@@ -258,6 +260,8 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
         {{".", "-o", "m.exr"}, "no place for the frames' numbers"},
         {{".", "--broken-frames", "hide", "-o", "m_%d.exr"}, "skip or stop"},
         {{"in.exr", "-o", "m.exr", "--report", "r.txt"}, "r.txt"},
+        {{"in.exr", "--compression", "lzma", "-o", "m.exr"}, "zip, rle or none"},
+        {{"in.exr", "--compression", "none", "-o", "m.ktx2"}, "only .exr"},
     };
     for (const auto& [words, expected] : cases) {
         Words all = {"bake"};
@@ -310,6 +314,30 @@ TEST(Bake, AVideoNamesItsBrokenFramesAndGoesOnWhereItStopped) {
     EXPECT_EQ(stopped.status, 2);
     EXPECT_NE(stopped.errors.find("frame 2 is broken"), std::string::npos) << stopped.errors;
     EXPECT_TRUE(std::filesystem::exists(folder / "maps" / "02.exr")) << "finished before it broke";
+}
+
+TEST(Bake, TheMemoryOfAVideoDoesNotGrowWithItsLength) {
+    const TemporaryFolder folder;
+    const Image image = gradient_image(512, 256); // 1.6 MB
+    save_image(folder / "image.exr", image);
+    const auto peak = [&](const std::string& name, int frames) {
+        std::ofstream list(folder / (name + ".txt"));
+        for (int i = 0; i < frames; ++i)
+            list << "image.exr\n";
+        list.close();
+        const ProgramRun run = run_kokage({"bake", name + ".txt", "--container", "cube", "--size", "16", "--method",
+                                           "table", "-o", name + "/%d.exr", "--report", name + ".json"},
+                                          folder.path());
+        EXPECT_EQ(run.status, 0) << run.errors;
+        const Json report = Json::parse(read_text(folder / (name + ".json")));
+        EXPECT_EQ(report["sequence"]["baked"], frames);
+        EXPECT_GT(report["sequence"]["frames_per_second"], 0);
+        for (const char* step : {"reading", "baking", "writing"})
+            EXPECT_GT(report["sequence"]["cpu_seconds_a_frame"][step], 0) << step;
+        return report["peak_memory_bytes"].get<double>();
+    };
+    const double few = peak("few", 10), many = peak("many", 70);
+    EXPECT_LT(many, few + 10 * 1.6e6) << "60 more images alone would be 94 MB";
 }
 
 } // namespace
