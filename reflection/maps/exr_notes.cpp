@@ -113,6 +113,7 @@ ExrHeader read_exr_header(const std::filesystem::path& path) {
 
 Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header) {
     const auto input = open(path);
+    const std::size_t pixels = std::size_t(header.width) * std::size_t(header.height);
     ExrPixels stored{header.width, header.height, input->spec().format == OIIO::TypeDesc::HALF, {}, 0};
     const TexelFormat format = stored.halves ? TexelFormat::half_rgb : TexelFormat::float_rgb;
     stored.bytes.resize(pixels * texel_bytes(format));
