@@ -32,8 +32,7 @@ std::string checksum_of(const ExrNotes& notes, const ExrPixels& pixels) {
     for (const auto& [key, value] : notes)
         if (key != "checksum")
             text += key + '=' + value + '\n';
-    const std::uint64_t sum =
-        byte_hash(std::span(pixels.bytes), byte_hash(std::as_bytes(std::span(text))));
+    const std::uint64_t sum = byte_hash(std::span(pixels.bytes), byte_hash(std::as_bytes(std::span(text))));
     std::array<char, 17> digits{};
     std::snprintf(digits.data(), digits.size(), "%016llx", static_cast<unsigned long long>(sum));
     return digits.data();
