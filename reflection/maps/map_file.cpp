@@ -5,8 +5,9 @@
 #include "reflection/maps/shell_atlas.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
-#include <limits>
+#include <cstdint>
 
 namespace kokage {
 namespace {
@@ -28,10 +29,11 @@ std::string shells_text(std::span<const ShellMap::Shell> shells, const ShellAtla
 }
 
 void check_finite(std::span<const float> values, int width, const std::filesystem::path& path) {
-    bool finite = true; // without a way out of the loop, it is done by vectors
+    constexpr std::uint32_t exponent = 0x7f800000u; // all of it is set in infinities and NaNs
+    std::uint32_t bad = 0;                          // integers, and no way out of the loop: it is done by vectors
     for (const float value : values)
-        finite &= std::abs(value) <= std::numeric_limits<float>::max();
-    if (finite)
+        bad |= std::uint32_t((std::bit_cast<std::uint32_t>(value) & exponent) == exponent);
+    if (!bad)
         return;
     const auto first = std::find_if_not(values.begin(), values.end(), [](float v) { return std::isfinite(v); });
     const std::size_t pixel = std::size_t(first - values.begin()) / 3;
