@@ -2,6 +2,7 @@
 #include "common/services/error.h"
 #include "tests/benchmark/foliage_benchmark.h"
 #include "tests/benchmark/reflection_benchmark.h"
+#include "tests/benchmark/relief_benchmark.h"
 #include "tests/benchmark/trees_benchmark.h"
 #include "viewer/command.h"
 
@@ -40,7 +41,21 @@ int run_benchmarks(const BenchOptions& options, const CommandContext& context, s
                                               .threads = context.threads,
                                               .experiments = options.experiments},
                                              *context.progress, out);
+    if (wanted("relief"))
+        failures += run_relief_benchmark({.output_folder = common.output_folder,
+                                          .data_folder = common.data_folder,
+                                          .quick = common.quick,
+                                          .threads = context.threads,
+                                          .experiments = options.experiments},
+                                         *context.progress, out);
     return failures;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+    std::string text;
+    for (const std::string& name : names)
+        text += (text.empty() ? "" : ", ") + name;
+    return text;
 }
 
 } // namespace
@@ -49,34 +64,30 @@ Command bench_command(CLI::App& program) {
     const auto options = std::make_shared<BenchOptions>();
     FoliageBenchmarkOptions& common = options->foliage;
     CLI::App* app = program.add_subcommand(
-        "bench", "Measure: every method's error against time; growing against others; reflection maps");
+        "bench", "Measure: every method's error against time; growing against others; reflection maps; relief");
     app->footer("\nExample: kokage bench foliage --quick -o results");
-    app->add_option("WHAT", options->what,
-                    "foliage (methods of shading: error against time), trees (growing: time and memory against leaves, "
-                    "beside other generators where they are installed), reflection (reflection maps: the paper's "
-                    "tables, error against time, beside cmgen where it is installed) or all")
+    app->add_option(
+           "WHAT", options->what,
+           "foliage (methods of shading: error against time), trees (growing: time and memory against leaves, "
+           "beside other generators where they are installed), reflection (reflection maps: the paper's "
+           "tables, error against time, beside cmgen where it is installed), relief (rays on height fields: reads, "
+           "time, wrong hits, the paper's own experiments) or all")
         ->required();
     app->add_option("-o,--output", common.output_folder,
-                    "Folder for foliage.json, trees.json or reflection.json, tables (.md) and plots; made if it is "
-                    "missing")
+                    "Folder for foliage.json, trees.json, reflection.json or relief.json, tables (.md), plots and "
+                    "pictures; made if it is missing")
         ->type_name("FOLDER")
         ->required();
     app->add_flag("--quick", common.quick,
                   "foliage: the scenes of 30,000 leaves alone, within two minutes with stored references; trees: two "
-                  "species; reflection: smaller samples, within two minutes");
+                  "species; reflection, relief: smaller samples, within two minutes");
     app->add_option("--data", common.data_folder,
-                    "foliage, reflection: folder with environments (env/*.hdr, *.exr) and objects")
+                    "foliage, reflection, relief: folder with env (lat-long images), objects and textures")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
-    app->add_option(
-           "--experiment", options->experiments,
-           "reflection: only these, separated by commas (otherwise all): " +
-               [] {
-                   std::string names;
-                   for (const std::string& name : reflection_experiment_names())
-                       names += (names.empty() ? "" : ", ") + name;
-                   return names;
-               }())
+    app->add_option("--experiment", options->experiments,
+                    "only these, separated by commas (otherwise all): reflection: " +
+                        joined(reflection_experiment_names()) + "; relief: " + joined(relief_experiment_names()))
         ->type_name("NAME")
         ->delimiter(',');
     app->add_option("--reference-paths", common.reference_paths,
@@ -86,12 +97,12 @@ Command bench_command(CLI::App& program) {
         ->capture_default_str();
     return {app, [options](const CommandContext& context) {
                 const std::string& what = options->what;
-                if (what != "foliage" && what != "trees" && what != "reflection" && what != "all")
+                if (what != "foliage" && what != "trees" && what != "reflection" && what != "relief" && what != "all")
                     throw InputError("there is no benchmark '" + what +
-                                     "'; there are: foliage, trees, reflection, all");
-                if (!options->experiments.empty() && what != "reflection")
-                    throw InputError("--experiment: only the benchmark reflection is made of experiments to choose "
-                                     "from");
+                                     "'; there are: foliage, trees, reflection, relief, all");
+                if (!options->experiments.empty() && what != "reflection" && what != "relief")
+                    throw InputError("--experiment: only the benchmarks reflection and relief are made of experiments "
+                                     "to choose from");
                 options->foliage.threads = context.threads;
                 NoText nothing;
                 std::ostream silent(&nothing);
