@@ -57,7 +57,7 @@ HWY_INLINE MapRead ReadMap(const DepthMapTable& maps, Vec u, Vec v, Vec du, Vec 
     sector = hn::IfThenElse(hn::Lt(sector, sectors), sector, hn::Sub(sector, sectors));
     const Int nearest = hn::ConvertTo(di, hn::Min(ring, Constant(float(maps.zeniths - 1))));
 
-    read.known = hn::And(wanted, hn::Lt(read.tangent, Constant(1e9f)));
+    read.known = wanted;
     if constexpr (kRepeat) {
         u = Fraction(u);
         v = Fraction(v);
@@ -97,8 +97,9 @@ HWY_INLINE Vec Projected(const DepthMapTable& maps, const MapRead& read) {
 template <bool kRepeat, bool kAny>
 class DepthMapSteps {
   public:
-    DepthMapSteps(const PaddedDepths& field, const DepthMapTable& maps, const DepthMapSearch& search)
-        : field_(field), maps_(maps), search_(search) {
+    /// `start_depths`: of P, for every ray of the stream; < 0: none.
+    DepthMapSteps(const PaddedDepths& field, const DepthMapSearch& search, const float* start_depths)
+        : field_(field), search_(search), start_depths_(start_depths) {
         t_ = first_ = last_ = step_ = low_ = high_ = hn::Zero(Tag());
         bisected_ = phase_ = hn::Zero(Tag());
         found_ = {low_, low_, low_, low_};
@@ -109,23 +110,16 @@ class DepthMapSteps {
         const Mask up = kAny ? hn::Lt(rays.ddepth, zero) : hn::Lt(zero, zero);
         const Mask slanted = hn::Or(hn::Gt(rays.ddepth, zero), up);
         const Vec per_depth = hn::Div(one, hn::IfThenElse(slanted, rays.ddepth, one)); // t; < 0 upwards
-        Vec first = zero, last = rays.t_last;
-        Vec step = hn::IfThenElse(slanted, hn::Mul(part, per_depth), hn::Mul(part, rays.t_last));
-        first = hn::IfThenElse(up, rays.t_last, first);
-        last = hn::IfThenElse(up, hn::Mul(Constant(-search_.same_hit), per_depth), last);
+        const Vec step = hn::Mul(part, hn::IfThenElse(slanted, per_depth, rays.t_last));
+        const Vec first = hn::IfThenElse(up, rays.t_last, zero);
         // What starts nearer to the plane than that is lit: its last place is before its first.
-        const Vec u = hn::Div(hn::Add(hn::NegMulAdd(rays.depth, hn::Mul(rays.dx, per_depth), rays.x), Constant(0.5f)),
-                              Constant(float(field_.width))),
-                  v = hn::Div(hn::Add(hn::NegMulAdd(rays.depth, hn::Mul(rays.dy, per_depth), rays.y), Constant(0.5f)),
-                              Constant(float(field_.height)));
-        const Mask can_hit = hn::Or(hn::Not(up), hn::Le(last, first));
-        const MapRead read =
-            ReadMap<kRepeat>(maps_, u, v, hn::Mul(rays.dx, hn::Div(per_depth, Constant(float(field_.width)))),
-                             hn::Mul(rays.dy, hn::Div(per_depth, Constant(float(field_.height)))),
-                             hn::And(starts, hn::And(slanted, can_hit)));
-        rays.reads = hn::Add(rays.reads, hn::IfThenElseZero(hn::RebindMask(IntTag(), read.known), Whole(1)));
-        Vec t = hn::Mul(hn::Sub(Projected(maps_, read), rays.depth), per_depth);
-        t = hn::IfThenElse(read.known, Between(up, first, last, t), first);
+        const Vec last = hn::IfThenElse(up, hn::Mul(Constant(-search_.same_hit), per_depth), rays.t_last);
+        const Int ray = hn::Max(rays.ray, Whole(0)); // -1: idle
+        const Vec start = hn::GatherIndex(Tag(), start_depths_, ray);
+        const Mask known = hn::And(hn::And(starts, slanted), hn::Ge(start, zero));
+        rays.reads = hn::Add(rays.reads, hn::IfThenElseZero(hn::RebindMask(IntTag(), known), Whole(1)));
+        Vec t = hn::Mul(hn::Sub(start, rays.depth), per_depth);
+        t = hn::IfThenElse(known, Between(up, first, last, t), first);
         // At the plane nothing needs to be read: nothing is above it, and the first step is what can be inside.
         const Mask on_plane = hn::And(hn::Eq(t, first), hn::Or(up, hn::Le(rays.depth, zero)));
         const Mask at_plane = hn::And(on_plane, hn::And(slanted, hn::Ne(first, last)));
@@ -188,8 +182,8 @@ class DepthMapSteps {
     }
 
     const PaddedDepths& field_;
-    const DepthMapTable& maps_;
     const DepthMapSearch& search_;
+    const float* start_depths_;
     Vec first_, last_, step_; ///< t: where the search may begin and end, and forward
     Vec t_, phase_;           ///< of the next read
     Vec low_, high_;          ///< t of the last points above the surface and below
@@ -197,19 +191,12 @@ class DepthMapSteps {
     Found found_;
 };
 
-template <bool kRepeat>
-void Run(const PaddedDepths& field, const DepthMapTable& maps, const DepthMapSearch& search,
-         std::span<const ReliefRay> rays, const LaneResults& results) {
-    if (results.hits)
-        RayStream<kRepeat, DepthMapSteps<kRepeat, false>>(field, rays, results, {field, maps, search}).run();
-    else
-        RayStream<kRepeat, DepthMapSteps<kRepeat, true>>(field, rays, results, {field, maps, search}).run();
-}
-
-template <bool kRepeat>
-void Bounds(const DepthMapTable& maps, std::span<const ReliefRay> rays, float* bounds, std::uint8_t* reads) {
+/// For every ray the depth that its map gives, projected by eq 1 (kProject) or as it stands; -1 where there is none:
+/// for rays that do not slant downwards (or, with kUpwards, upwards).
+template <bool kRepeat, bool kUpwards, bool kProject>
+void ReadMaps(const DepthMapTable& maps, std::span<const ReliefRay> rays, float* depths) {
     const Tag d;
-    const float steepest = std::tan(float(kLastBoundedZenith) * kPi / 180);
+    const float steepest = kProject ? 1e9f : std::tan(float(kLastBoundedZenith) * kPi / 180);
     std::array<ReliefRay, kLanes> few;
     for (std::size_t first = 0; first < rays.size(); first += kLanes) {
         const std::size_t count = std::min(kLanes, rays.size() - first);
@@ -220,9 +207,9 @@ void Bounds(const DepthMapTable& maps, std::span<const ReliefRay> rays, float* b
             return hn::GatherIndex(d, reinterpret_cast<const float*>(from) + k,
                                    hn::Mul(hn::Iota(IntTag(), 0), Whole(7)));
         };
-        const Vec z = field(2), dz = field(5), one = Constant(1);
-        const Mask down = hn::And(hn::Gt(dz, Constant(1e-9f)), hn::Lt(dz, Constant(1e9f)));
-        const Vec per_depth = hn::Div(one, hn::IfThenElse(down, dz, one)), du = hn::Mul(field(3), per_depth),
+        const Vec z = field(2), dz = field(5), one = Constant(1), speed = kUpwards ? hn::Abs(dz) : dz;
+        const Mask slanted = hn::And(hn::Gt(speed, Constant(1e-9f)), hn::Lt(speed, Constant(1e9f)));
+        const Vec per_depth = hn::Div(one, hn::IfThenElse(slanted, dz, one)), du = hn::Mul(field(3), per_depth),
                   dv = hn::Mul(field(4), per_depth);
         Vec u = field(0), v = field(1);
         if constexpr (kRepeat) {
@@ -232,15 +219,24 @@ void Bounds(const DepthMapTable& maps, std::span<const ReliefRay> rays, float* b
         // Whoever comes from further away would not find its texel in single precision.
         const Vec travel = hn::Mul(hn::Abs(z), hn::Max(hn::Abs(du), hn::Abs(dv)));
         const MapRead read = ReadMap<kRepeat>(maps, hn::NegMulAdd(z, du, u), hn::NegMulAdd(z, dv, v), du, dv,
-                                              hn::And(down, hn::Lt(travel, Constant(16))));
+                                              hn::And(slanted, hn::Lt(travel, Constant(kProject ? 1e4f : 16.f))));
         const Mask known = hn::And(read.known, hn::Lt(read.tangent, Constant(steepest)));
-        HWY_ALIGN float depth[kLanes], was_read[kLanes];
-        hn::Store(hn::IfThenElseZero(known, read.depth), d, depth);
-        hn::Store(hn::IfThenElseZero(known, one), d, was_read);
-        for (std::size_t k = 0; k < count; ++k) {
-            bounds[first + k] = depth[k];
-            reads[first + k] = was_read[k] > 0;
-        }
+        HWY_ALIGN float stored[kLanes];
+        hn::Store(hn::IfThenElse(known, kProject ? Projected(maps, read) : read.depth, Constant(-1)), d, stored);
+        std::copy_n(stored, count, depths + first);
+    }
+}
+
+template <bool kRepeat>
+void Run(const PaddedDepths& field, const DepthMapTable& maps, const DepthMapSearch& search,
+         std::span<const ReliefRay> rays, const LaneResults& results) {
+    std::vector<float> starts(rays.size());
+    if (results.hits) {
+        ReadMaps<kRepeat, false, true>(maps, rays, starts.data());
+        RayStream<kRepeat, DepthMapSteps<kRepeat, false>>(field, rays, results, {field, search, starts.data()}).run();
+    } else {
+        ReadMaps<kRepeat, true, true>(maps, rays, starts.data());
+        RayStream<kRepeat, DepthMapSteps<kRepeat, true>>(field, rays, results, {field, search, starts.data()}).run();
     }
 }
 
@@ -254,12 +250,11 @@ void SearchDepthMaps(const PaddedDepths& field, const DepthMapTable& maps, const
         Run<false>(field, maps, search, rays, results);
 }
 
-void ReadBounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds,
-                std::uint8_t* reads) {
+void ReadBounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds) {
     if (wrap == HeightWrap::repeat)
-        Bounds<true>(maps, rays, bounds, reads);
+        ReadMaps<true, false, false>(maps, rays, bounds);
     else
-        Bounds<false>(maps, rays, bounds, reads);
+        ReadMaps<false, false, false>(maps, rays, bounds);
 }
 
 } // namespace kokage::relief_lanes::HWY_NAMESPACE
@@ -290,10 +285,9 @@ void search_depth_maps(const PaddedDepths& field, const DepthMapTable& maps, con
     HWY_DYNAMIC_DISPATCH(SearchDepthMaps)(field, maps, search, rays, results);
 }
 
-void read_bounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds,
-                 std::uint8_t* reads) {
+void read_bounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds) {
     using namespace relief_lanes;
-    HWY_DYNAMIC_DISPATCH(ReadBounds)(maps, wrap, rays, bounds, reads);
+    HWY_DYNAMIC_DISPATCH(ReadBounds)(maps, wrap, rays, bounds);
 }
 
 } // namespace kokage

@@ -21,9 +21,8 @@ struct DepthMapSearch;
 void search_depth_maps(const PaddedDepths& field, const DepthMapTable& maps, const DepthMapSearch& search,
                        std::span<const ReliefRay> rays, const LaneResults& results);
 
-/// For maps of lower bounds: depths where rays may begin, for what is hit first is not above them; `reads` is 1 where
-/// one was read, and elsewhere 0 (and the depth 0).
-void read_bounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds,
-                 std::uint8_t* reads);
+/// For maps of lower bounds: depths where rays may begin, for what is hit first is not above them; -1 where nothing is
+/// promised, and nothing was read.
+void read_bounds(const DepthMapTable& maps, HeightWrap wrap, std::span<const ReliefRay> rays, float* bounds);
 
 } // namespace kokage

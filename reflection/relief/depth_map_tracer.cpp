@@ -83,9 +83,11 @@ class ConservativeTracer final : public ReliefTracer {
         std::vector<float> bounds(kBlock);
         for (std::size_t first = 0; first < rays.size(); first += kBlock) {
             const auto given = rays.subspan(first, std::min(kBlock, rays.size() - first));
-            read_bounds(table_, wrap_, given, bounds.data(), block.reads.data());
-            for (std::size_t k = 0; k < given.size(); ++k)
+            read_bounds(table_, wrap_, given, bounds.data());
+            for (std::size_t k = 0; k < given.size(); ++k) {
+                block.reads[k] = bounds[k] >= 0;
                 block.skipped[k] = move_to(given[k], bounds[k] - kBoundMargin, block.moved[k]);
+            }
             body(first, block, std::span<const ReliefRay>(block.moved.data(), given.size()));
         }
     }
