@@ -3,10 +3,12 @@
 #include "tests/support/temporary_folder.h"
 
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <gtest/gtest.h>
 #include <string>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <thread>
 #include <unistd.h>
@@ -17,11 +19,26 @@ namespace kokage {
 struct ProgramRun {
     int status = -1; ///< exit status; 128 + signal if a signal ended it
     std::string output, errors;
+    double peak_megabytes = 0; ///< of memory
 };
 
 struct ProgramRunOptions {
-    double interrupt_after_seconds = 0; ///< > 0: SIGINT is sent then
+    /// > 0: SIGINT is sent so long after the program has begun to listen to it (which takes a busy machine a while).
+    double interrupt_after_seconds = 0;
 };
+
+/// Waits until a process catches SIGINT, has ended, or nothing can be known of it.
+inline void wait_until_it_listens(pid_t process) {
+    const std::string status = "/proc/" + std::to_string(process) + "/status";
+    for (;;) {
+        const std::string text = read_text(status);
+        const std::size_t caught = text.find("SigCgt:");
+        if (caught == std::string::npos || text.find("State:\tZ") != std::string::npos ||
+            (std::stoull(text.substr(caught + 7), nullptr, 16) >> (SIGINT - 1) & 1))
+            return;
+        std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    }
+}
 
 /// Runs `kokage` with arguments in a folder and waits for it.
 inline ProgramRun run_kokage(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
@@ -43,14 +60,17 @@ inline ProgramRun run_kokage(const std::vector<std::string>& arguments, const st
         _exit(127);
     }
     if (options.interrupt_after_seconds > 0) {
+        wait_until_it_listens(child);
         std::this_thread::sleep_for(std::chrono::duration<double>(options.interrupt_after_seconds));
         kill(child, SIGINT);
     }
     int state = 0;
-    while (waitpid(child, &state, 0) < 0 && errno == EINTR) {
+    rusage used{};
+    while (wait4(child, &state, 0, &used) < 0 && errno == EINTR) {
     }
     ProgramRun run;
     run.status = WIFEXITED(state) ? WEXITSTATUS(state) : 128 + WTERMSIG(state);
+    run.peak_megabytes = double(used.ru_maxrss) / 1024;
     run.output = read_text(output);
     run.errors = read_text(errors);
     return run;

@@ -3,7 +3,6 @@
 #include "tests/support/program_run.h"
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -361,16 +360,15 @@ TEST(Shade, MistakesAreFoundBeforeTheWork) {
         {{"--data", "nowhere"}, "nowhere"},
     };
     for (const auto& [words, hint] : wrongs) {
-        // A million leaves would take long: the mistake has to be found first. (An image that can't be read is found
-        // after growing.)
+        // A million leaves take half a gigabyte and more: the mistake has to be found before them. (An image that can't
+        // be read is found after growing.)
         Words all = {"shade", "oak", "--leaves", words == Words({"--environment", "sky.exr"}) ? "100" : "1000000"};
         all.insert(all.end(), words.begin(), words.end());
-        const auto start = std::chrono::steady_clock::now();
         const ProgramRun run = run_kokage(all, folder.path());
         EXPECT_EQ(run.status, 2) << hint << ": " << run.errors;
         EXPECT_TRUE(is_one_complaint(run.errors)) << hint;
         EXPECT_NE(run.errors.find(hint), std::string::npos) << run.errors;
-        EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(5)) << hint;
+        EXPECT_LT(run.peak_megabytes, 300) << hint;
     }
     const ProgramRun overwriting = run_kokage({"shade", "t.glb", "-o", "t.glb"}, folder.path());
     EXPECT_EQ(overwriting.status, 2);
@@ -382,12 +380,10 @@ TEST(Shade, MistakesAreFoundBeforeTheWork) {
 TEST(Shade, StopsOnCtrlCAndLeavesNothingHalfWritten) {
     TemporaryFolder folder;
     std::ofstream(folder / "oak.glb") << "an older oak";
-    const auto start = std::chrono::steady_clock::now();
     const ProgramRun run =
         run_kokage({"shade", "oak", "--leaves", "20000", "--method", "path-traced", "--effort", "100000"},
                    folder.path(), {.interrupt_after_seconds = 1.5});
     EXPECT_EQ(run.status, 130);
-    EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(30));
     EXPECT_TRUE(is_one_complaint(run.errors));
     EXPECT_EQ(folder.files(), Words({"oak.glb"}));
     EXPECT_EQ(read_text(folder / "oak.glb"), "an older oak");
