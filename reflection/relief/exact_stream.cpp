@@ -267,7 +267,7 @@ class Stream {
         out.speed = hn::Max(hn::Abs(dx), hn::Abs(dy));
         out.t_last = hn::Min(hn::Sub(t_last, t_first), hn::Div(constant(double(kMostTravel)), out.speed));
         out.t_entered = t_first;
-        start_length = hn::IfThenElse(down, hn::Div(hn::Mul(constant(0.5), out.speed), dz), zero);
+        start_length = hn::IfThenElse(down, hn::Div(hn::Mul(constant(0.7), out.speed), dz), zero);
         // Comparisons that fail for what is not a number.
         odd = hn::Not(hn::And(hn::And(hn::Ge(fastest, constant(0x1p-40)), hn::Le(fastest, constant(0x1p40))),
                               hn::And(hn::Le(far, constant(kRepeat ? 0x1p23 : 0x1p20)), hn::Eq(t_most, t_most))));
@@ -665,6 +665,8 @@ class Stream {
         Retire(g, mask);
     }
     HWY_INLINE void WriteDoubtful(Lanes& g, Mask mask) {
+        if (HWY_LIKELY(hn::AllFalse(Tag(), mask)))
+            return;
         const Names names(g);
         HWY_ALIGN float t[kLanes];
         hn::Store(hn::Min(g.doubt, g.t), Tag(), t);
