@@ -10,6 +10,10 @@ namespace kokage {
 /// Finds what cell_by_cell.h finds. Streams of rays are traced in vector code of single precision, whose answers hold
 /// whatever rounding does; the few that do not (`doubtful` below; rays that graze the surface, mostly) are traced in
 /// double precision. For speed, hand over thousands of rays at a time.
+///
+/// 8.5 reads and 50 ns a ray on bark of 256² (10 to 85 degrees from the normal, AVX-512), 10.0 reads on 1024²; the
+/// planes are made in 8 ms CPU at 1024², and with the depths take 1.67 times the height map. More in
+/// reflection/README.md.
 class ExactTracer : public ReliefTracer {
   public:
     /// The planes that bound the surface; loading them is faster than making them. Throws InputError.

@@ -104,7 +104,7 @@ ReliefHit reliefTrace(highp vec3 origin, highp vec3 direction, highp float tMost
     highp vec2 perCell = vec2(d.x == 0.0 ? 1e30 : 1.0 / d.x, d.y == 0.0 ? 1e30 : 1.0 / d.y);
     highp float speed = max(abs(d.x), abs(d.y)), t = 0.0;
     highp vec2 cell = vec2(0.0);
-    highp int level = clamp(d.z > 0.0 ? reliefLevel(0.5 * speed / d.z) : 0, min(1, top), top);
+    highp int level = clamp(d.z > 0.0 ? reliefLevel(0.7 * speed / d.z) : 0, min(1, top), top);
 
     for (highp int n = 0; n < 1048576; ++n) {
         highp ivec2 at = corner + ivec2(cell);

@@ -195,7 +195,7 @@ TEST(ReliefExact, FindsTheTrueHitsOfAnyRay) {
             for (int k = 0; k < 6; ++k) {
                 const HeightField field = random.field(width, height, wrap);
                 const auto tracer = make_exact_tracer(field);
-                std::vector<ReliefRay> rays(400);
+                std::vector<ReliefRay> rays(1000);
                 for (ReliefRay& ray : rays)
                     ray = random.ray(field);
                 std::vector<TrueReliefHit> truth;
