@@ -18,10 +18,8 @@ struct Experiment {
     void (*measure)(const ReliefExperimentContext&);
 };
 constexpr Experiment kExperiments[] = {
-    {"views", measure_relief_views},
-    {"shadows", measure_relief_shadows},
-    {"paper", measure_relief_paper},
-    {"pictures", draw_relief_reads},
+    {"views", measure_relief_views}, {"shadows", measure_relief_shadows}, {"occlusion", measure_relief_occlusion},
+    {"paper", measure_relief_paper}, {"pictures", draw_relief_reads},
 };
 
 void tell(std::ostream& out, const ReliefRecord& r) {

@@ -176,7 +176,7 @@ std::string relief_figures(const Records& records) {
         return most(
             records,
             [&](const ReliefRecord& r) {
-                return r.experiment == "occlusion" && r.method == "horizons" && r.view == view;
+                return r.experiment == "occlusion" && r.method.starts_with("horizons") && r.view == view;
             },
             &ReliefRecord::rms_error);
     };
