@@ -37,6 +37,13 @@ struct OpennessSettings {
     int azimuths = 48; ///< about so many horizons a texel; 4 to 256
 };
 
+/// Checked files; refused by name when cut off, altered, of another version, or made for another height field or other
+/// settings.
+void save_openness(const ReliefOpenness& openness, const std::filesystem::path& path, const HeightField& field,
+                   const OpennessSettings& settings);
+ReliefOpenness load_openness(const std::filesystem::path& path, const HeightField& field,
+                             const OpennessSettings& settings);
+
 /// From horizons (horizon_sweep.h). All threads; the same bits on any number of them. Throws InputError for settings
 /// that make no sense, Stopped.
 ReliefOpenness horizon_openness(const HeightField& field, const OpennessSettings& settings,

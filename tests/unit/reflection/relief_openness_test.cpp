@@ -6,8 +6,10 @@
 #include "reflection/relief/exact_tracer.h"
 #include "reflection/relief/horizon_sweep.h"
 #include "reflection/relief/relief_openness.h"
+#include "tests/support/temporary_folder.h"
 
 #include <cmath>
+#include <fstream>
 #include <gtest/gtest.h>
 #include <numbers>
 
@@ -235,6 +237,34 @@ TEST(ReliefOpenness, IsTheSameOnAnyNumberOfThreadsAndStops) {
         bool stop_requested() const override { return true; }
     } stop;
     EXPECT_THROW(horizon_openness(field, {}, stop), Stopped);
+}
+
+TEST(ReliefOpenness, ComesBackFromItsFileAndOthersAreRefused) {
+    const HeightField field = waves(12, 9, HeightWrap::repeat);
+    const OpennessSettings settings{{}, OpennessNormal::surface, 8};
+    const ReliefOpenness openness = horizon_openness(field, settings);
+    const TemporaryFolder folder;
+    const std::filesystem::path path = folder / "bark.open";
+    save_openness(openness, path, field, settings);
+    const ReliefOpenness again = load_openness(path, field, settings);
+    EXPECT_EQ(again.texels, openness.texels);
+    EXPECT_EQ(again.corners, openness.corners);
+    EXPECT_EQ(again.lookup({0.37f, 0.81f}), openness.lookup({0.37f, 0.81f}));
+    OpennessSettings deeper = settings;
+    deeper.scale.depth_m = 0.2f;
+    EXPECT_THROW(load_openness(path, field, deeper), InputError);
+    EXPECT_THROW(load_openness(path, waves(12, 9, HeightWrap::clamp), settings), InputError);
+    const std::string bytes = read_text(path);
+    constexpr std::uint64_t seed = 9;
+    Random random(seed);
+    for (int k = 0; k < 60; ++k) {
+        std::string mutated = bytes;
+        char& byte = mutated[random.below(std::uint32_t(bytes.size()))];
+        byte = char(byte ^ 16);
+        std::ofstream(path, std::ios::binary | std::ios::trunc)
+            << (k == 0 ? bytes.substr(0, bytes.size() - 9) : mutated);
+        EXPECT_THROW(load_openness(path, field, settings), InputError) << "seed " << seed << ", " << k;
+    }
 }
 
 TEST(ReliefOpenness, RefusesSettingsThatMakeNoSense) {
