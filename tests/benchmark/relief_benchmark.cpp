@@ -19,7 +19,7 @@ struct Experiment {
 };
 constexpr Experiment kExperiments[] = {
     {"views", measure_relief_views}, {"shadows", measure_relief_shadows}, {"occlusion", measure_relief_occlusion},
-    {"paper", measure_relief_paper}, {"pictures", draw_relief_reads},
+    {"paper", measure_relief_paper}, {"pictures", draw_reliefs},
 };
 
 void tell(std::ostream& out, const ReliefRecord& r) {

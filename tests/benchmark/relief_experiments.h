@@ -67,7 +67,7 @@ void measure_relief_paper(const ReliefExperimentContext& context);
 void measure_relief_shadows(const ReliefExperimentContext& context);
 /// "occlusion": the openness of texels, and between them.
 void measure_relief_occlusion(const ReliefExperimentContext& context);
-/// Pictures: reads per pixel of four methods on a tiled sphere (after [D]'s figure 9).
-void draw_relief_reads(const ReliefExperimentContext& context);
+/// Pictures: a tiled sphere in light, and the reads per pixel of all methods (after [D]'s figure 9).
+void draw_reliefs(const ReliefExperimentContext& context);
 
 } // namespace kokage

@@ -15,7 +15,7 @@ const ReliefScale kScale{glm::vec2(1.f), kBenchReliefDepth};
 
 ReliefView plane_view(float degrees, int side, unsigned seed) {
     constexpr float tiles = 3;
-    ReliefView view{"plane-" + std::to_string(int(std::lround(degrees))), side, side, {}, {}};
+    ReliefView view{"plane-" + std::to_string(int(std::lround(degrees))), side, side, {}, {}, {}};
     Random random(seed);
     const float angle = glm::radians(degrees), azimuth = 2 * kPi * random.uniform();
     const glm::vec2 across(std::cos(azimuth), std::sin(azimuth)), along(-across.y, across.x);
@@ -33,7 +33,7 @@ ReliefView plane_view(float degrees, int side, unsigned seed) {
 }
 
 ReliefView sphere_view(int side, int around) {
-    ReliefView view{"sphere", side, side, {}, {}};
+    ReliefView view{"sphere", side, side, {}, {}, {}};
     // One tile at the equator is 2π/around of the sphere's radius, in both directions.
     const float tile = 2 * kPi / float(around);
     const glm::vec3 ray(0, 0, -1); // the eye is at +z, y is up
@@ -49,6 +49,7 @@ ReliefView sphere_view(int side, int around) {
             const glm::vec2 coordinate(std::atan2(normal.x, normal.z) / tile, std::acos(normal.y) / tile);
             ReliefScale scale = kScale;
             scale.tile_m.x = cosine; // tiles get narrower towards the poles
+            view.frames.push_back({east, south, normal, scale});
             view.pixels.push_back(std::uint32_t(y * side + x));
             view.rays.push_back(
                 relief_ray(coordinate, {glm::dot(ray, east), glm::dot(ray, south), glm::dot(ray, normal)}, scale));

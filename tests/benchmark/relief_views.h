@@ -7,11 +7,19 @@
 
 namespace kokage {
 
+/// How the tile lies on the surface at a pixel.
+struct ReliefFrame {
+    glm::vec3 tangent{1, 0, 0}, bitangent{0, 1, 0},
+        normal{0, 0, 1}; ///< in the picture's frame: x right, y up, z to the eye
+    ReliefScale scale;
+};
+
 struct ReliefView {
     std::string name;
     int width = 0, height = 0;           ///< of the picture, in pixels
     std::vector<ReliefRay> rays;         ///< row by row
     std::vector<std::uint32_t> pixels{}; ///< of each ray: column + row * width
+    std::vector<ReliefFrame> frames{};   ///< of each ray; the sphere's alone
 };
 
 /// A square of three tiles seen in parallel projection, `degrees` from its normal: `side` x `side` rays that lie evenly

@@ -8,7 +8,7 @@
 namespace kokage {
 
 void measure_relief_views(const ReliefExperimentContext& context) {
-    const std::vector<ReliefView> views = benchmark_views(context.quick ? 160 : 512);
+    const std::vector<ReliefView> views = benchmark_views(context.quick ? 160 : 640);
     for (const BenchmarkMap& map : context.reliefs.maps()) {
         std::vector<std::vector<TrueReliefHit>> truths;
         for (const ReliefView& view : views)
