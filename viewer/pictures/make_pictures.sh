@@ -1,5 +1,5 @@
 #!/bin/bash
-# Makes the pictures of README.md in viewer/pictures: oak.jpg, species.jpg, teapot.jpg and contact_sheet.jpg.
+# Makes the pictures of README.md in viewer/pictures: oak.jpg, species.jpg, teapot.jpg, relief.jpg and contact_sheet.jpg.
 #
 #   viewer/pictures/make_pictures.sh [PROGRAM]
 #
@@ -50,6 +50,10 @@ if [ -f "$teapot" ]; then
 else
     echo "skipped: the teapot (needs env/forest_slope.hdr and objects/utah_teapot.obj in KOKAGE_DATA)"
 fi
+
+# A ball of bark in light, and the reads of each of its pixels, method by method.
+"$program" --quiet bench relief --quick --experiment pictures -o "$work/relief"
+oiiotool --nosoftwareattrib "$work/relief/relief-bark-256.png" --resize 1568x0 --compression jpeg:90 -o "$here/relief.jpg"
 
 tiles=() rows=0 columns=0
 for environment in "${environments[@]}"; do
