@@ -32,7 +32,36 @@ void print_stages(const WorkReport& work) {
         std::printf("  skipped: %s (%s): %s\n", skip.what.c_str(), skip.why.c_str(), skip.saved.c_str());
 }
 
-void print_map(const BakeOptions& options, const BakedMap& map) {
+/// "roughness 0.5", "exponent 4.3 (roughness 0.6)".
+std::string lobe_text(const Lobe& lobe) {
+    char text[80];
+    if (lobe.kind == LobeKind::ggx)
+        std::snprintf(text, sizeof text, "roughness %.3g", lobe.parameter);
+    else
+        std::snprintf(text, sizeof text, "exponent %.4g (roughness %.3g)", lobe.parameter,
+                      roughness_from_exponent(lobe.parameter));
+    return text;
+}
+
+void print_lobes(const BakeOptions& options) {
+    const std::vector<MapLevel>& levels = options.plan.levels;
+    if (options.map.container == MapContainer::voxel_cube) {
+        const SmoothnessRange range = smoothness_of(options.map);
+        std::printf("  smoothness %.3g to %.3g, %d voxels along an edge\n", range.roughest, range.smoothest,
+                    options.plan.size);
+    } else if (options.map.container == MapContainer::shells) {
+        std::printf("  %s, %s to %s, %d to %d texels along an edge\n",
+                    counted(levels.size(), "shell", "shells").c_str(), lobe_text(levels.front().lobe).c_str(),
+                    lobe_text(levels.back().lobe).c_str(), levels.front().size, levels.back().size);
+    } else {
+        for (std::size_t i = 0; i < levels.size(); ++i)
+            std::printf("  level %zu: %s, %s along an edge\n", i,
+                        levels[i].unfiltered ? "the image itself" : lobe_text(levels[i].lobe).c_str(),
+                        counted(std::uint64_t(levels[i].size), "texel", "texels").c_str());
+    }
+}
+
+void print_map(const BakeOptions& options) {
     if (options.map.container == MapContainer::harmonics) {
         std::printf("spherical harmonics of %s, %s\n", options.quantity.c_str(),
                     counted(std::uint64_t(options.map.harmonics.bands), "band", "bands").c_str());
@@ -40,8 +69,9 @@ void print_map(const BakeOptions& options, const BakedMap& map) {
     }
     std::printf("%s, %s: %s, %s, by %s\n", std::string(map_container_name(options.map.container)).c_str(),
                 std::string(lobe_kind_name(options.map.lobe)).c_str(),
-                counted(map.layout().size(), "filtered texel", "filtered texels").c_str(),
-                bytes_text(double(map.bytes())).c_str(), options.method.c_str());
+                counted(options.plan.texels, "filtered texel", "filtered texels").c_str(),
+                bytes_text(double(options.plan.bytes)).c_str(), options.method.c_str());
+    print_lobes(options);
 }
 
 void print_file(const std::filesystem::path& file) {
@@ -50,13 +80,34 @@ void print_file(const std::filesystem::path& file) {
                     bytes_text(double(std::filesystem::file_size(file))).c_str());
 }
 
-BakeRecord begin_record(const BakeOptions& options, const BakedMap& map) {
+BakeRecord begin_record(const BakeOptions& options) {
     BakeRecord record;
     record.options = &options;
-    record.map = &map;
-    if (const std::optional<WorkReport::Skip> skip = saved_by_range(options.map, map))
-        record.work.skips.push_back(*skip);
+    const double rounding = format_rounding(options.map.format);
+    if (options.tolerance && *options.tolerance < rounding) {
+        char text[160];
+        std::snprintf(text, sizeof text,
+                      "%s rounds by up to %.2g of a value, more than the tolerance of %.2g; --format "
+                      "float does not",
+                      options.format.c_str(), rounding, *options.tolerance);
+        record.work.warnings.push_back(text);
+    }
     return record;
+}
+
+/// What a range saved, once it is known what it cost; 0 = that is not known.
+void add_saved_by_range(BakeRecord& record, double cpu_seconds_a_map) {
+    std::optional<WorkReport::Skip> skip = saved_by_range(record.options->map);
+    if (!skip)
+        return;
+    MapSettings whole = record.options->map;
+    whole.smoothness.reset();
+    whole.roughness.reset();
+    const double part = double(record.options->plan.texels), all = double(plan_map(whole).texels);
+    if (part > 0 && all > part && cpu_seconds_a_map > 0)
+        skip->saved +=
+            ", and about " + duration_text(cpu_seconds_a_map * (all / part - 1)) + " of CPU, at the same cost a texel";
+    record.work.skips.push_back(*skip);
 }
 
 void finish_record(const BakeOptions& options, BakeRecord& record, const Stopwatch& watch) {
@@ -79,18 +130,21 @@ std::unique_ptr<Baker> baker_for(const BakeOptions& options, const BakedMap& map
 void bake_one(const BakeOptions& options, const CommandContext& context) {
     const Stopwatch watch;
     const std::unique_ptr<BakedMap> map = make_map(options.map);
-    BakeRecord record = begin_record(options, *map);
+    BakeRecord record = begin_record(options);
     const Stopwatch loading;
     const Environment environment =
         obtain_environment(options.surroundings, glm::dvec3(0), record.environment_report, false);
     record.environment = &environment;
     record.work.stages.push_back({"reading the surroundings", loading.cpu(), loading.wall()});
-    record.work.warnings = record.environment_report.warnings;
+    record.work.warnings.insert(record.work.warnings.end(), record.environment_report.warnings.begin(),
+                                record.environment_report.warnings.end());
     if (const auto skip = skipped_by_reduction(record.environment_report, environment))
         record.work.skips.push_back(*skip);
     context.progress->throw_if_stopped();
     const std::unique_ptr<Baker> baker = baker_for(options, *map, environment, record.work, *context.progress);
+    const Stopwatch baking;
     map->bake(environment, baker.get(), record.work, *context.progress);
+    add_saved_by_range(record, baking.cpu());
     context.progress->throw_if_stopped();
 
     const WritingFiles writing;
@@ -104,7 +158,7 @@ void bake_one(const BakeOptions& options, const CommandContext& context) {
         return;
     print_warnings(record.work.warnings);
     std::printf("%s\n", environment.description.c_str());
-    print_map(options, *map);
+    print_map(options);
     print_stages(record.work);
     print_file(options.output);
     print_file(options.report);
@@ -147,7 +201,7 @@ void bake_video(const BakeOptions& options, const CommandContext& context) {
     const Stopwatch watch;
     const std::vector<SequenceImage> images = image_sequence(options.surroundings.environment);
     const std::unique_ptr<BakedMap> map = make_map(options.map);
-    BakeRecord record = begin_record(options, *map);
+    BakeRecord record = begin_record(options);
     SequenceResult result;
     try {
         const WritingFiles writing; // a second Ctrl-C waits for the frame's file, too
@@ -158,12 +212,14 @@ void bake_video(const BakeOptions& options, const CommandContext& context) {
                                   "'; the same command goes on");
     }
     record.sequence = &result;
+    if (result.baked > 0)
+        add_saved_by_range(record, 0); // frames are read and written while others are baked
     finish_record(options, record, watch);
     context.progress->clear();
     if (context.quiet)
         return;
     print_warnings(record.work.warnings);
-    print_map(options, *map);
+    print_map(options);
     print_stages(record.work);
     print_sequence(result, options.output);
     print_file(options.report);

@@ -1,13 +1,16 @@
 #include "viewer/bake_options.h"
 #include "common/services/error.h"
+#include "common/services/memory.h"
 #include "common/services/named_file.h"
 #include "common/services/output_file.h"
+#include "reflection/maps/cube_file.h"
 #include "reflection/maps/image_sequence.h"
 #include "viewer/data_folder.h"
 #include "viewer/output_check.h"
 #include "viewer/values.h"
 
 #include <algorithm>
+#include <cstdio>
 
 namespace kokage {
 namespace fs = std::filesystem;
@@ -25,17 +28,23 @@ void add_map_options(CLI::App& app, BakeOptions& o) {
         ->type_name("NAME")
         ->group("Map");
     app.add_option("--size", o.size,
-                   "cube: voxels along an edge (otherwise 128); .ktx2, .dds: texels along an edge of the smoothest "
-                   "level (otherwise 256). Shells find theirs from their lobes")
+                   "cube: voxels along an edge of the whole range (otherwise 128); .ktx2, .dds: texels along an edge "
+                   "of the smoothest level (otherwise 256, or what the lobes of a range need). Shells find theirs from "
+                   "their lobes")
         ->type_name("N")
         ->group("Map");
     app.add_option("--levels", o.levels,
-                   ".ktx2, .dds: mip levels, of roughness 0 to 1 in equal steps (otherwise down to 16 texels)")
+                   ".ktx2, .dds: mip levels, in equal steps of roughness from 0 or the smooth end of a range to 1 or "
+                   "its rough end (otherwise down to 16 texels, five at least where the size allows; .dds: at most 8)")
         ->type_name("N")
         ->group("Map");
     app.add_option("--smoothness", o.smoothness,
                    "Only what is as smooth as A to B, from 0 (rough) to 1: the part of the map that a scene uses, no "
-                   "larger than its lobes need")
+                   "larger than its lobes need. Lookups outside of it give its nearest end")
+        ->type_name("A,B")
+        ->group("Map");
+    app.add_option("--roughness", o.roughness,
+                   "The same in glTF's roughness, from 0 (a mirror; .ktx2 and .dds only) to 1: 0.2,0.5")
         ->type_name("A,B")
         ->group("Map");
     app.add_option(
@@ -88,8 +97,9 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
         ->capture_default_str()
         ->group("Method");
     app.add_option("--tolerance", o.tolerance,
-                   "spectral: largest error, as a share of 1 or of the brightest light left when lamps are split off "
-                   "(otherwise 0.00015)")
+                   "spectral: largest error of filtering, as a share of 1 or of the brightest light left when lamps "
+                   "are split off (otherwise 0.00015). Rounding to the --format comes to that: 0.0005 of a value as "
+                   "half, 0.002 as shared-exponent, nothing as float")
         ->type_name("E")
         ->group("Method");
     app.add_option("--threshold", o.threshold,
@@ -158,6 +168,7 @@ void complete_harmonics(BakeOptions& o) {
                                                     {"--size", o.size.has_value()},
                                                     {"--levels", o.levels.has_value()},
                                                     {"--smoothness", !o.smoothness.empty()},
+                                                    {"--roughness", !o.roughness.empty()},
                                                     {"--roughness-scale", o.roughness_scale != plain.roughness_scale},
                                                     {"--detail", o.detail.has_value()},
                                                     {"--filter", o.filter != plain.filter},
@@ -196,6 +207,9 @@ void complete_size(BakeOptions& o) {
         refuse("--levels", "only .ktx2 and .dds have mip levels; leave it out");
     if (o.levels && *o.levels < 1)
         refuse("--levels", std::to_string(*o.levels) + " levels make no map; give at least 1");
+    if (o.levels && *o.levels > kMostDdsLevels && lower_ending(o.output) == ".dds")
+        refuse("--levels", "a .dds has room for the roughness of " + std::to_string(kMostDdsLevels) +
+                               " levels, not of " + std::to_string(*o.levels) + "; give fewer, or take .ktx2");
     if (o.detail && container != MapContainer::shells)
         refuse("--detail", "it makes shells finer; here --size does");
     if (o.detail && !(*o.detail >= 0.25 && *o.detail <= 16))
@@ -206,6 +220,7 @@ void complete_size(BakeOptions& o) {
         refuse("--filter", "only shells can be read so; leave it out");
     o.map.size = o.size.value_or(container == MapContainer::voxel_cube ? 128 : 0);
     o.map.levels = o.levels.value_or(0);
+    o.map.most_levels = lower_ending(o.output) == ".dds" ? kMostDdsLevels : 0;
     o.map.texels_a_width = o.detail.value_or(o.map.texels_a_width);
     o.map.filter = o.filter == "cubic" ? TexelFilter::cubic : TexelFilter::bilinear;
     o.map.scale = scale_rule_from_name(o.roughness_scale);
@@ -215,12 +230,62 @@ void complete_size(BakeOptions& o) {
     if (o.map.scale == ScaleRule::paper && container != MapContainer::voxel_cube && o.smoothness.empty())
         refuse("--roughness-scale", "it places the voxels of --container cube and tells what --smoothness means; give "
                                     "one of them, or leave it out");
-    if (o.smoothness.empty())
+}
+
+void complete_range(BakeOptions& o) {
+    const auto range_from = [](const std::string& text, const char* option, const char* wanted) {
+        const std::vector<double> range = numbers_from(text, option);
+        if (range.size() != 2 || !(range[0] >= 0 && range[0] <= range[1] && range[1] <= 1))
+            refuse(option, "'" + text + "' is not two numbers from " + wanted);
+        return std::pair(range[0], range[1]);
+    };
+    if (!o.smoothness.empty() && !o.roughness.empty())
+        refuse("--roughness", "it gives the range that --smoothness gives; leave one of them out");
+    if (!o.smoothness.empty()) {
+        const auto [a, b] = range_from(o.smoothness, "--smoothness", "0 (rough) to 1, rough first: 0.3,0.6");
+        o.map.smoothness = SmoothnessRange{a, b};
+    }
+    if (!o.roughness.empty()) {
+        const auto [a, b] = range_from(o.roughness, "--roughness", "0 (a mirror) to 1, smooth first: 0.2,0.5");
+        o.map.roughness = RoughnessRange{a, b};
+    }
+}
+
+std::string what_fits(const BakeOptions& o, std::uint64_t available) {
+    MapSettings smaller = o.map;
+    const bool shells = o.map.container == MapContainer::shells;
+    const int step = o.map.container == MapContainer::voxel_cube ? 2 : 1; // a voxel cube's size stays even
+    smaller.levels = 0;
+    smaller.size = o.plan.size;
+    if (o.map.container == MapContainer::voxel_cube)
+        smaller.size = o.map.size;
+    for (int halvings = 1; halvings < 10; ++halvings) {
+        smaller.texels_a_width /= 2;
+        smaller.size = std::max(smaller.size / 2 / step * step, 4);
+        if (shells && smaller.texels_a_width < 0.25)
+            break;
+        const std::uint64_t needed = plan_map(smaller).peak_bytes;
+        if (needed > available)
+            continue;
+        char text[80];
+        if (shells)
+            std::snprintf(text, sizeof text, "--detail %.3g would take ", smaller.texels_a_width);
+        else
+            std::snprintf(text, sizeof text, "--size %d would take ", smaller.size);
+        return text + bytes_text(double(needed));
+    }
+    return "even the smallest takes more than there is";
+}
+
+/// Plans the map, and refuses what this machine's memory can't hold.
+void complete_plan(BakeOptions& o) {
+    o.plan = plan_map(o.map);
+    const std::uint64_t available = available_memory_bytes();
+    if (o.plan.peak_bytes <= available)
         return;
-    const std::vector<double> range = numbers_from(o.smoothness, "--smoothness");
-    if (range.size() != 2 || !(range[0] >= 0 && range[0] <= range[1] && range[1] <= 1))
-        refuse("--smoothness", "'" + o.smoothness + "' is not two numbers from 0 (rough) to 1, rough first: 0.3,0.6");
-    o.map.smoothness = SmoothnessRange{range[0], range[1]};
+    refuse(o.map.container == MapContainer::shells ? "--detail" : "--size",
+           "baking this map takes about " + bytes_text(double(o.plan.peak_bytes)) + " of memory, and " +
+               bytes_text(double(available)) + " are free here; " + what_fits(o, available));
 }
 
 void complete_method(BakeOptions& o) {
@@ -308,10 +373,12 @@ void complete_bake_options(BakeOptions& o) {
     if (o.map.container != MapContainer::harmonics) {
         complete_container(o);
         complete_size(o);
+        complete_range(o);
     }
     complete_method(o);
     complete_outputs(o);
     complete_compression(o);
+    complete_plan(o);
     if (!o.is_sequence)
         check_surroundings(o.surroundings);
     else if (!o.surroundings.sun.empty() || o.surroundings.turbidity)

@@ -14,7 +14,8 @@ struct BakeOptions {
     Surroundings surroundings; ///< .environment is ENV
     std::filesystem::path data;
 
-    std::string container, lobe, smoothness, filter = "bilinear", format = "half", roughness_scale = "solved";
+    std::string container, lobe, smoothness, roughness, filter = "bilinear", format = "half",
+                                                        roughness_scale = "solved";
     std::string compression;
     std::optional<int> size, levels;
     std::optional<double> detail;
@@ -33,12 +34,14 @@ struct BakeOptions {
 
     bool is_sequence = false; ///< by complete_bake_options
     MapSettings map{};
+    MapPlan plan{}; ///< of `map`
     BakerSettings baker{};
 };
 
 void add_bake_options(CLI::App& app, BakeOptions& options);
 
-/// Checks everything that can be known before any work, and fills `map` and `baker`. Throws InputError.
+/// Checks everything that can be known before any work, the memory that it takes too, and fills `map`, `plan` and
+/// `baker`. Throws InputError.
 void complete_bake_options(BakeOptions& options);
 
 } // namespace kokage

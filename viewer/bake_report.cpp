@@ -44,6 +44,40 @@ Json sequence_json(const SequenceResult& result) {
             {"first_broken", std::move(broken)}};
 }
 
+/// A lobe in both words that users have for it; the image itself has roughness 0 and no exponent.
+void add_lobe(Json& json, const Lobe& lobe, bool unfiltered) {
+    const bool phong = lobe.kind == LobeKind::phong;
+    json["roughness"] = unfiltered ? 0 : phong ? roughness_from_exponent(lobe.parameter) : lobe.parameter;
+    json["exponent"] = nullptr;
+    if (!unfiltered)
+        json["exponent"] = phong ? lobe.parameter : exponent_from_roughness(lobe.parameter);
+}
+
+Json map_json(const BakeOptions& o) {
+    Json json = {{"file", o.output},
+                 {"container", map_container_name(o.map.container)},
+                 {"size", o.plan.size},
+                 {"filtered_texels", o.plan.texels},
+                 {"bytes", o.plan.bytes}};
+    if (o.map.container != MapContainer::harmonics)
+        json["rounding"] = format_rounding(o.map.format);
+    if (o.map.container == MapContainer::voxel_cube) {
+        const SmoothnessRange range = smoothness_of(o.map);
+        json["smoothness"] = {range.roughest, range.smoothest};
+    }
+    if (!o.plan.levels.empty())
+        json["levels"] = Json::array();
+    if (o.map.lobe == LobeKind::phong && o.map.container != MapContainer::harmonics) {
+        const RoughnessScale scale = scale_of(o.map);
+        json["roughness_scale"] = {{"u", scale.u()}, {"levels", scale.levels()}, {"cube_size", scale.cube_size()}};
+    }
+    for (const MapLevel& level : o.plan.levels) {
+        json["levels"].push_back({{"size", level.size}, {"is_the_image", level.unfiltered}});
+        add_lobe(json["levels"].back(), level.lobe, level.unfiltered);
+    }
+    return json;
+}
+
 } // namespace
 
 Json bake_identity(const BakeOptions& o) {
@@ -62,6 +96,7 @@ Json bake_identity(const BakeOptions& o) {
                  {"format", o.format},
                  {"compression", o.compression},
                  {"smoothness", o.smoothness},
+                 {"roughness", o.roughness},
                  {"output", std::filesystem::path(o.output).filename().string()},
                  {"method", o.method},
                  {"lights", o.surroundings.lights},
@@ -82,15 +117,7 @@ Json bake_report(const BakeRecord& record) {
     Json json = {{"inputs", {{"environment", o.surroundings.environment}}}, {"settings", bake_identity(o)}};
     if (record.environment)
         json["inputs"]["surroundings"] = environment_json(*record.environment, record.environment_report);
-    json["map"] = {{"file", o.output},
-                   {"container", map_container_name(o.map.container)},
-                   {"filtered_texels", record.map->layout().size()},
-                   {"bytes", record.map->bytes()}};
-    if (o.map.lobe == LobeKind::phong && o.map.container != MapContainer::harmonics) {
-        const RoughnessScale scale = scale_of(o.map);
-        json["map"]["roughness_scale"] = {
-            {"u", scale.u()}, {"levels", scale.levels()}, {"cube_size", scale.cube_size()}};
-    }
+    json["map"] = map_json(o);
     if (record.sequence)
         json["sequence"] = sequence_json(*record.sequence);
     json["counts"] = Json::object();

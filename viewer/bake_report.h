@@ -10,7 +10,6 @@ namespace kokage {
 /// What a map was made from and what it took.
 struct BakeRecord {
     const BakeOptions* options = nullptr;
-    const BakedMap* map = nullptr;
     const Environment* environment = nullptr; ///< of a single map
     EnvironmentReport environment_report;
     const SequenceResult* sequence = nullptr; ///< of a video

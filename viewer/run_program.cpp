@@ -13,11 +13,15 @@
 #include <new>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 
 namespace kokage {
 namespace {
 
 constexpr int kInternalError = 1, kInputError = 2, kStopped = 130;
+constexpr const char* kNotEnoughMemory =
+    "there is not enough memory for that; ask for less (a smaller size, fewer leaves, a smaller image), or close other "
+    "programs";
 
 /// Help whose descriptions are broken into lines, each under the first.
 class WrappedFormatter : public CLI::Formatter {
@@ -91,7 +95,10 @@ int run_command(const Command& command, bool quiet, int threads) {
         return complain("'" + error.path1().string() + "': " + error.code().message(), kInputError);
     } catch (const std::bad_alloc&) {
         progress.clear();
-        return complain("not enough memory", kInternalError);
+        return complain(kNotEnoughMemory, kInputError);
+    } catch (const std::length_error&) { // more elements than an array can have at all
+        progress.clear();
+        return complain(kNotEnoughMemory, kInputError);
     } catch (const std::exception& error) {
         progress.clear();
         return complain(error.what(), kInternalError);

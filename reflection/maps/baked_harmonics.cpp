@@ -1,5 +1,4 @@
 #include "reflection/maps/baked_harmonics.h"
-#include "common/directions/spherical_harmonics.h"
 #include "common/services/stopwatch.h"
 #include "reflection/maps/harmonics_file.h"
 
@@ -8,9 +7,9 @@ namespace {
 
 class BakedHarmonics final : public BakedMap {
   public:
-    explicit BakedHarmonics(const HarmonicsSettings& settings) : settings_(settings) {}
+    explicit BakedHarmonics(const MapSettings& settings) : plan_(plan_map(settings)), settings_(settings.harmonics) {}
     const TexelLayout& layout() const override { return nothing_; }
-    std::uint64_t bytes() const override { return sh_count(settings_.bands) * sizeof(glm::vec3); }
+    const MapPlan& plan() const override { return plan_; }
     void bake(const Environment& surroundings, Baker*, WorkReport& report, Progress& progress) override {
         const Stopwatch watch;
         progress.begin("projecting on harmonics", 0);
@@ -25,6 +24,7 @@ class BakedHarmonics final : public BakedMap {
     }
 
   private:
+    MapPlan plan_;
     HarmonicsSettings settings_;
     TexelLayout nothing_;
     Harmonics harmonics_;
@@ -32,7 +32,7 @@ class BakedHarmonics final : public BakedMap {
 
 } // namespace
 
-std::unique_ptr<BakedMap> make_baked_harmonics(const HarmonicsSettings& settings) {
+std::unique_ptr<BakedMap> make_baked_harmonics(const MapSettings& settings) {
     return std::make_unique<BakedHarmonics>(settings);
 }
 

@@ -5,6 +5,6 @@
 namespace kokage {
 
 /// Its layout is empty: nothing is filtered. Written as .json (harmonics_file.h).
-std::unique_ptr<BakedMap> make_baked_harmonics(const HarmonicsSettings& settings);
+std::unique_ptr<BakedMap> make_baked_harmonics(const MapSettings& settings);
 
 } // namespace kokage

@@ -36,8 +36,10 @@ struct CubeFileSummary {
 /// finite, with their place, and for files that can't be written.
 CubeFileSummary write_ktx2(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format);
 
+/// A DDS has room for no more levels' lobes.
+inline constexpr int kMostDdsLevels = 8;
 /// DDS with a DX10 header: DXGI_FORMAT_R16G16B16A16_FLOAT or R32G32B32A32_FLOAT, each face with all its levels.
-/// Shared exponents are refused (few readers know them), and so are more than 8 levels.
+/// Shared exponents are refused (few readers know them), and so are more than kMostDdsLevels.
 CubeFileSummary write_dds(const std::filesystem::path& path, const PrefilteredCube& cube, TexelFormat format);
 
 /// What the writers above write; `name` begins the messages.

@@ -41,7 +41,7 @@ constexpr std::uint32_t four_characters(const char (&text)[5]) {
     return std::uint32_t(text[0]) | std::uint32_t(text[1]) << 8 | std::uint32_t(text[2]) << 16 |
            std::uint32_t(text[3]) << 24;
 }
-constexpr std::size_t kHeaderBytes = 4 + 124, kDx10Bytes = 20, kNotes = 32, kMostLevels = 8;
+constexpr std::size_t kHeaderBytes = 4 + 124, kDx10Bytes = 20, kNotes = 32, kMostLevels = kMostDdsLevels;
 constexpr std::uint64_t kMostBytes = std::uint64_t(1) << 34, kLargestSize = 16384;
 
 /// Of everything that follows the headers, and of what is said of the levels' lobes.

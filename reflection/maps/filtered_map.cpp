@@ -50,10 +50,11 @@ FilteredMap filtered_map(VoxelCube voxels) {
     const auto cube = std::make_shared<const VoxelCube>(std::move(voxels));
     FilteredMap result;
     result.kind = cube->layout().kind;
-    const double smoothest = cube->scale().exponent(1);
+    const double roughest = cube->scale().exponent(cube->range().roughest);
+    const double smoothest = cube->scale().exponent(cube->range().smoothest);
     const bool phong = result.kind == LobeKind::phong;
-    result.least_parameter = phong ? 0 : roughness_from_exponent(smoothest);
-    result.most_parameter = phong ? smoothest : 1;
+    result.least_parameter = phong ? roughest : roughness_from_exponent(smoothest);
+    result.most_parameter = phong ? smoothest : roughness_from_exponent(roughest);
     result.description = "voxel cube, " + range_text(result) + ", " + std::to_string(cube->size()) + " voxels wide";
     result.lookup = [cube](std::span<const glm::vec3> directions, double parameter, std::span<glm::vec3> filtered) {
         const std::vector<float> smoothness(directions.size(), cube->smoothness(parameter));

@@ -77,6 +77,15 @@ class NotesReader {
                 return value;
         fail("its kokage:" + key + " is '" + text(key) + "', which this program does not know");
     }
+    SmoothnessRange smoothness() const {
+        const std::string& range = text("smoothness");
+        const std::size_t space = std::min(range.find(' '), range.size());
+        const auto roughest = number_from_text(range.substr(0, space));
+        const auto smoothest = number_from_text(range.substr(std::min(space + 1, range.size())));
+        if (!roughest || !smoothest)
+            fail("its kokage:smoothness is '" + range + "', not two numbers");
+        return {*roughest, *smoothest};
+    }
     LobeKind lobe() const { return one_of<LobeKind>("lobe", {{"phong", LobeKind::phong}, {"ggx", LobeKind::ggx}}); }
     TexelFormat format() const {
         return one_of<TexelFormat>("format", {{"half", TexelFormat::half_rgb},
@@ -120,15 +129,25 @@ ShellMap read_shells(const ExrHeader& header, const NotesReader& notes, const st
     return map;
 }
 
+int cube_width(const NotesReader& notes, double size, const SmoothnessRange& range) {
+    try {
+        return VoxelCube::extent(int(size), range).size;
+    } catch (const InputError& error) {
+        notes.fail(std::string("its header describes no map (") + error.what() + ")");
+    }
+}
+
 VoxelCube read_cube(const ExrHeader& header, const NotesReader& notes, const std::filesystem::path& path) {
     const double size = notes.number("cube_size");
     if (!(size >= 4 && size <= 1022 && size == std::floor(size)))
         notes.fail("its kokage:cube_size is '" + notes.text("cube_size") + "'");
-    const int width = int(size) + 2;
+    const SmoothnessRange range = notes.smoothness();
+    const int width = cube_width(notes, size, range);
     check_size(notes, header, width, width * width);
     const Image image = read_noted_exr(path, header);
     try {
-        VoxelCube cube(notes.lobe(), RoughnessScale::with_u(notes.number("u"), int(size), notes.number("levels")));
+        VoxelCube cube(notes.lobe(), RoughnessScale::with_u(notes.number("u"), int(size), notes.number("levels")),
+                       range);
         std::vector<glm::vec3> texels;
         for (const std::size_t voxel : cube.voxel_of_texel())
             texels.emplace_back(image.pixels[3 * voxel], image.pixels[3 * voxel + 1], image.pixels[3 * voxel + 2]);
@@ -174,6 +193,7 @@ std::function<void()> packed_map(const std::filesystem::path& path, const VoxelC
                       {"format", std::string(texel_format_name(format))},
                       {"cube_size", std::to_string(cube.scale().cube_size())},
                       {"levels", number_text(cube.scale().levels())},
+                      {"smoothness", number_text(cube.range().roughest) + " " + number_text(cube.range().smoothest)},
                       {"u", number_text(cube.scale().u())}};
     return writing(path, std::move(pixels), std::move(notes), made_from, compression);
 }

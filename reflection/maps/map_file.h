@@ -13,7 +13,9 @@
 //   shells  kokage:least_parameter, kokage:most_parameter, kokage:shell_ratio, kokage:texels_a_width, kokage:filter
 //                                  ShellSettings; they fix the layout
 //           kokage:shells          for other programs: "parameter width resolution x y" of each shell, ';' between
-//   cube    kokage:cube_size, kokage:levels, kokage:u     RoughnessScale
+//   cube    kokage:cube_size, kokage:levels, kokage:u     RoughnessScale: s, I, u
+//           kokage:smoothness      "0.3 0.6": VoxelCube::range(), λ of the rough and of the smooth end; with s it fixes
+//           n
 #include "reflection/maps/exr_notes.h"
 #include "reflection/maps/shell_map.h"
 #include "reflection/maps/voxel_cube.h"

@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kLargestSize = 16384;
+constexpr int kLargestSize = 16384, kLeastLevels = 5;
 
 /// The point of the cube's surface, or of a face's plane beyond it, at (s, t) of a face.
 glm::dvec3 face_point(int face, double s, double t) {
@@ -58,11 +58,13 @@ double rectangle_solid_angle(double s, double t) {
     return std::atan2(s * t, std::sqrt(1 + s * s + t * t));
 }
 
+} // namespace
+
 bool is_unfiltered(LobeKind kind, double parameter) {
     return kind == LobeKind::ggx ? parameter == 0 : std::isinf(parameter) && parameter > 0;
 }
 
-void check_settings(const CubeSettings& settings) {
+void check_cube(const CubeSettings& settings) {
     auto fail = [](const std::string& why) { throw InputError("cube map: " + why); };
     const std::size_t levels = settings.parameters.size();
     if (settings.size < 1 || settings.size > kLargestSize)
@@ -73,7 +75,7 @@ void check_settings(const CubeSettings& settings) {
     if (levels > 1 && (settings.size & (settings.size - 1)) != 0)
         fail("faces of " + std::to_string(settings.size) +
              " texels can't be halved evenly from level to level; take a power of two");
-    if ((settings.size >> (levels - 1)) < 1)
+    if (levels > 30 || (settings.size >> (levels - 1)) < 1)
         fail(std::to_string(levels) + " levels are more than faces of " + std::to_string(settings.size) +
              " texels have; ask for fewer, or for larger faces");
     for (std::size_t i = 0; i < levels; ++i) {
@@ -88,8 +90,6 @@ void check_settings(const CubeSettings& settings) {
         }
     }
 }
-
-} // namespace
 
 glm::dvec3 cube_texel_direction(int face, int x, int y, int size) {
     return glm::normalize(face_point(face, position_of(x, size), position_of(y, size)));
@@ -127,7 +127,7 @@ std::vector<double> cube_texel_solid_angles(int size) {
 
 int usual_level_count(int size) {
     int levels = 1;
-    while (size % 2 == 0 && size / 2 >= 16) {
+    while (size % 2 == 0 && (size / 2 >= 16 || levels < kLeastLevels)) {
         size /= 2;
         ++levels;
     }
@@ -149,7 +149,7 @@ std::vector<double> filament_roughness(int levels) {
 }
 
 PrefilteredCube empty_cube(const CubeSettings& settings) {
-    check_settings(settings);
+    check_cube(settings);
     PrefilteredCube cube;
     cube.kind = settings.kind;
     for (std::size_t i = 0; i < settings.parameters.size(); ++i) {

@@ -58,7 +58,12 @@ struct CubeSettings {
     std::vector<double> parameters;
 };
 
-/// Levels from `size` down to 16 (or size itself, if that is smaller).
+/// Whether that is the image itself: GGX's roughness 0, an infinite exponent of Phong's.
+bool is_unfiltered(LobeKind kind, double parameter);
+/// Throws InputError for settings that make no cube.
+void check_cube(const CubeSettings& settings);
+/// Levels from `size` down to 16, and at least five, as far as sizes can be halved: 512 has 6, 64 and 16 have 5, 8 has
+/// 4, 7 has 1.
 int usual_level_count(int size);
 /// Level i of n has roughness i / (n-1): glTF's EXT_lights_image_based, "levels evenly map to roughness 0 to 1".
 std::vector<double> even_roughness(int levels);
@@ -66,7 +71,7 @@ std::vector<double> even_roughness(int levels);
 /// smooth. (tools/cmgen/src/cmgen.cpp, lodToPerceptualRoughness: the root of 2 r - r² = a.)
 std::vector<double> filament_roughness(int levels);
 
-/// A cube with all its levels, their texels black. Throws InputError for settings that make no cube.
+/// A cube with all its levels, their texels black. Throws InputError as check_cube() does.
 PrefilteredCube empty_cube(const CubeSettings& settings);
 /// The texels of the filtered levels, in order: what a baker is made for.
 TexelLayout filtered_layout(const PrefilteredCube& cube);

@@ -5,6 +5,16 @@
 
 namespace kokage {
 
+/// A part of the scale, in smoothness λ: 0 <= roughest <= smoothest <= 1.
+struct SmoothnessRange {
+    double roughest = 0, smoothest = 1;
+};
+
+/// A part of the scale, in glTF's roughness: 0 (a mirror) <= smoothest <= roughest <= 1.
+struct RoughnessRange {
+    double smoothest = 0, roughest = 1;
+};
+
 /// [R] eqs 12 and 13: Λ = g(λ) = -ln I / ln cos(arctan(u / (λ s))), evaluated as 2 ln I / log1p((u/(λ s))²).
 /// s = cube size in voxels, I = brightness levels; g(1) = Λ_max fixes u.
 class RoughnessScale {

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <string>
 
@@ -49,6 +50,12 @@ TexelFormat texel_format_from_name(std::string_view name) {
 
 std::size_t texel_bytes(TexelFormat format) {
     return format == TexelFormat::half_rgb ? 6 : format == TexelFormat::float_rgb ? 12 : 4;
+}
+
+double format_rounding(TexelFormat format) {
+    return format == TexelFormat::half_rgb    ? std::ldexp(1.0, -11)
+           : format == TexelFormat::float_rgb ? 0
+                                              : std::ldexp(1.0, -9);
 }
 
 std::vector<std::byte> packed_texels(std::span<const glm::vec3> texels, TexelFormat format) {

@@ -19,6 +19,8 @@ std::string_view texel_format_name(TexelFormat format); ///< "half", "float", "s
 /// Throws InputError that lists them.
 TexelFormat texel_format_from_name(std::string_view name);
 std::size_t texel_bytes(TexelFormat format);
+/// Largest error of rounding to it, as a share of the value (shared exponent: of the largest channel); 0 for floats.
+double format_rounding(TexelFormat format);
 
 /// Finite colours in a format's bytes, rounded to the nearest; what is larger than the format can hold becomes its
 /// largest value, and negative values become 0 in a shared exponent.

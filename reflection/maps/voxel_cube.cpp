@@ -5,42 +5,90 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <ranges>
 #include <string>
 
 namespace kokage {
 namespace {
 
-int checked_size(int s) {
+constexpr double kSlack = 1e-3; ///< lookups are done in float
+
+void check(int s, const SmoothnessRange& range) {
     if (s < 4 || s > 1022 || s % 2 != 0)
         throw InputError("voxel cube of size " + std::to_string(s) + ": ask for an even size from 4 to 1022");
-    return s + 2;
+    if (!(range.roughest >= 0 && range.roughest <= range.smoothest && range.smoothest <= 1))
+        throw InputError("voxel cube of smoothness " + std::to_string(range.roughest) + " to " +
+                         std::to_string(range.smoothest) + ": ask for a range within 0 and 1, the rough end first");
 }
 
-/// Whether a trilinear lookup within `radius` voxels of the centre can read the voxel at `offset` from it: whether the
-/// nearest corner of the nearest cell that it belongs to lies within.
-bool is_read(const glm::dvec3& offset, double radius) {
-    const glm::dvec3 nearest = glm::max(glm::abs(offset) - 1.0, glm::dvec3(0));
-    const double slack = 1e-3; // lookups are done in float
-    return glm::length(nearest) <= radius + slack;
-}
+/// Where lookups of a range are done: between two spheres around the centre, in voxels.
+struct LookedUp {
+    LookedUp(int s, const SmoothnessRange& range)
+        : least(distance(s, range.roughest) - kSlack), most(distance(s, range.smoothest) + kSlack) {}
+    /// Whether a trilinear lookup between the spheres can read the voxel at `offset` from the centre: whether one of
+    /// the cells that it belongs to reaches between them.
+    bool reads(const glm::dvec3& offset) const {
+        const glm::dvec3 farthest = glm::abs(offset) + 1.0, nearest = glm::max(farthest - 2.0, glm::dvec3(0));
+        return glm::length(nearest) <= most && glm::length(farthest) >= least;
+    }
+    /// Even, as s is, and enough for a cell around any place within.
+    int width() const { return 2 * int(std::ceil(most + 0.5)); }
+    double least, most;
+
+  private:
+    static double distance(int s, double smoothness) {
+        return std::min(std::hypot(smoothness * s / 2.0, double(VoxelCube::centre_radius)), s / 2.0);
+    }
+};
 
 } // namespace
 
-VoxelCube::VoxelCube(LobeKind kind, const RoughnessScale& scale)
-    : size_(checked_size(scale.cube_size())), scale_(scale) {
+VoxelCube::Extent VoxelCube::extent(int cube_size, const SmoothnessRange& range) {
+    check(cube_size, range);
+    const LookedUp looked_up(cube_size, range);
+    Extent extent{looked_up.width(), 0};
+    // An eighth of it; along a row, voxels that are read stand together.
+    const int half = extent.size / 2;
+    for (int z = 0; z < half; ++z)
+        for (int y = 0; y < half; ++y) {
+            const auto far_enough = [&](int x) { return glm::length(glm::dvec3(x, y, z) + 1.5) >= looked_up.least; };
+            const auto read_or_nearer = [&](int x) {
+                return !far_enough(x) || looked_up.reads(glm::dvec3(x, y, z) + 0.5);
+            };
+            const auto numbers = std::views::iota(0, half);
+            const auto first = std::ranges::partition_point(numbers, std::not_fn(far_enough));
+            extent.texels += 8 * std::size_t(std::ranges::partition_point(numbers, read_or_nearer) - first);
+        }
+    return extent;
+}
+
+VoxelCube::VoxelCube(LobeKind kind, const RoughnessScale& scale, const SmoothnessRange& range)
+    : range_(range), size_(extent(scale.cube_size(), range).size), scale_(scale) {
     const double radius = scale.cube_size() / 2.0, centre = (size_ - 1) / 2.0;
+    const LookedUp looked_up(scale.cube_size(), range);
+    const std::size_t texels = extent(scale.cube_size(), range).texels;
     layout_.kind = kind;
+    layout_.directions.reserve(texels);
+    layout_.parameters.reserve(texels);
+    voxel_of_texel_.reserve(texels);
+    std::vector<float> known(3 * std::size_t(size_) * std::size_t(size_) / 8 + 1, -1.f); // by distance
     std::size_t voxel = 0;
     for (int z = 0; z < size_; ++z)
         for (int y = 0; y < size_; ++y)
             for (int x = 0; x < size_; ++x, ++voxel) {
                 const glm::dvec3 offset = glm::dvec3(x, y, z) - centre;
-                if (!is_read(offset, radius))
+                if (!looked_up.reads(offset))
                     continue;
-                const double distance = glm::length(offset), exponent = scale.exponent(distance / radius);
+                const double distance = glm::length(offset);
                 layout_.directions.push_back(offset / distance);
-                layout_.parameters.push_back(
-                    float(kind == LobeKind::phong ? exponent : std::min(roughness_from_exponent(exponent), 1.0)));
+                // Twice the offsets are odd, and the sum of their squares 3 more than a multiple of 8.
+                float& parameter = known[std::size_t(std::lround(4 * glm::dot(offset, offset))) / 8];
+                if (parameter < 0) {
+                    const double exponent = scale.exponent(distance / radius);
+                    parameter = float(kind == LobeKind::phong ? exponent : roughness_from_exponent(exponent));
+                }
+                layout_.parameters.push_back(parameter);
                 voxel_of_texel_.push_back(voxel);
             }
     voxels_.assign(voxel, glm::vec3(0));
@@ -60,7 +108,8 @@ float VoxelCube::smoothness(double parameter) const {
 }
 
 glm::vec3 VoxelCube::lookup(const glm::vec3& direction, float smoothness) const {
-    const float sphere = 0.5f * float(size_ - 2), wanted = sphere * std::clamp(smoothness, 0.f, 1.f);
+    const float sphere = 0.5f * float(scale_.cube_size());
+    const float wanted = sphere * std::clamp(smoothness, float(range_.roughest), float(range_.smoothest));
     const float radius = std::min(std::sqrt(wanted * wanted + centre_radius * centre_radius), sphere);
     const glm::vec3 place = 0.5f * float(size_ - 1) + radius * direction;
     const glm::ivec3 cell = glm::clamp(glm::ivec3(place), 0, size_ - 2);

@@ -16,6 +16,9 @@
 //        +---+===+===+===+===+---+
 //
 // Corners: voxels that no lookup with λ <= 1 reads hold 0 and are no texels of the layout (48 % of the cube).
+// A range of smoothness [a, b]: the voxels keep their places and lobes, but only those that lookups within the range
+// read are stored (n = b s + 2 at least, the corners of a smaller cube cut off) and are texels of the layout (those
+// near the centre are not). Lookups outside of the range give its nearest end.
 // Centre: s is even, so that the point t = 0, where the direction is undefined, lies between eight voxels, whose
 // lobes (Λ = 4.3 where s = 128, I = 256) all have a direction. A trilinear lookup in the middle of them is their mean
 // whatever the direction, whereas F of even the widest Phong lobe (Λ = 0, half the sphere) depends on it; and eq 13
@@ -35,17 +38,24 @@ namespace kokage {
 
 class VoxelCube {
   public:
-    /// s = scale.cube_size(), even, 4 … 1022. Throws InputError otherwise.
-    VoxelCube(LobeKind kind, const RoughnessScale& scale);
-    int size() const { return size_; } ///< voxels along an edge, guards included: s + 2
+    /// s = scale.cube_size(), even, 4 … 1022; `range` within 0 and 1, the rough end first. Throws InputError otherwise.
+    VoxelCube(LobeKind kind, const RoughnessScale& scale, const SmoothnessRange& range = {});
+    /// What a cube has, before any memory is taken. Throws InputError as the constructor does.
+    struct Extent {
+        int size = 0;           ///< voxels along an edge, guards included: s + 2 for the whole range
+        std::size_t texels = 0; ///< of the layout
+    };
+    static Extent extent(int cube_size, const SmoothnessRange& range = {});
+    int size() const { return size_; } ///< Extent::size
     const RoughnessScale& scale() const { return scale_; }
+    const SmoothnessRange& range() const { return range_; }
     const TexelLayout& layout() const { return layout_; }
     void set_texels(std::span<const glm::vec3> filtered); ///< in the layout's order
     std::span<const glm::vec3> voxels() const { return voxels_; }
     /// Index into voxels() of each texel of the layout, ascending.
     std::span<const std::size_t> voxel_of_texel() const { return voxel_of_texel_; }
 
-    /// Trilinear, as a 3D texture does it. `direction` unit, `smoothness` in [0,1] (clamped). Thread-safe.
+    /// Trilinear, as a 3D texture does it. `direction` unit, `smoothness` λ, clamped to the range. Thread-safe.
     glm::vec3 lookup(const glm::vec3& direction, float smoothness) const;
     void lookup(std::span<const glm::vec3> directions, std::span<const float> smoothness,
                 std::span<glm::vec3> filtered) const;
@@ -55,6 +65,7 @@ class VoxelCube {
     static constexpr float centre_radius = 1;
 
   private:
+    SmoothnessRange range_;
     int size_;
     RoughnessScale scale_;
     TexelLayout layout_;

@@ -120,6 +120,35 @@ TEST(MapFile, APackedMapIsWrittenAsItWas) {
     EXPECT_TRUE(std::equal(read.voxels().begin(), read.voxels().end(), cube.voxels().begin()));
 }
 
+TEST(MapFile, AVoxelCubesRangeComesBackAndIsChecked) {
+    const TemporaryFolder folder;
+    VoxelCube cube(LobeKind::ggx, RoughnessScale::solved(16), {0.3, 1.0 / 3});
+    cube.set_texels(random_texels(cube.layout().size(), -5, 5));
+    write_map(folder / "cube.exr", cube, TexelFormat::float_rgb);
+    const MapFile file = read_map(folder / "cube.exr");
+    const VoxelCube& back = std::get<VoxelCube>(file.map);
+    EXPECT_EQ(back.range().roughest, 0.3);
+    EXPECT_EQ(back.range().smoothest, 1.0 / 3);
+    EXPECT_LT(back.size(), 12);
+    for (const float smoothness : {0.f, 0.31f, 1.f}) {
+        const glm::vec3 value = cube.lookup({0.6f, 0, -0.8f}, smoothness);
+        EXPECT_EQ(back.lookup({0.6f, 0, -0.8f}, smoothness), value);
+        EXPECT_GT(value.r, 0.f);
+    }
+    const ExrHeader header = read_exr_header(folder / "cube.exr");
+    const Image image = read_noted_exr(folder / "cube.exr", header);
+    for (const auto& [range, why] : {std::pair{"0 1", "describes a map of 18 x 324"},
+                                     {"0.6 0.3", "describes no map"},
+                                     {"0.3", "not two numbers"},
+                                     {"0.3 x", "not two numbers"}}) {
+        ExrNotes notes = header.notes;
+        notes["smoothness"] = range;
+        notes.erase("checksum");
+        write_noted_exr(folder / "changed.exr", exr_pixels(image, false), notes);
+        EXPECT_NE(error_of(folder / "changed.exr").find(why), std::string::npos) << error_of(folder / "changed.exr");
+    }
+}
+
 TEST(MapFile, AnotherProgramSeesAPictureOfTheShells) {
     const TemporaryFolder folder;
     write_map(folder / "map.exr", random_shells(TexelFormat::half_rgb, TexelFilter::bilinear));

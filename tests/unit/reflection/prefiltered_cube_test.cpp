@@ -133,8 +133,8 @@ TEST(PrefilteredCube, RoughnessRulesAreTheirProgramsOwn) {
     for (std::size_t i = 0; i < printed.size(); ++i)
         EXPECT_NEAR(filament[i], printed[i], 5e-4);
     EXPECT_EQ(usual_level_count(256), 5);
-    EXPECT_EQ(usual_level_count(16), 1);
-    EXPECT_EQ(usual_level_count(7), 1);
+    for (const auto& [size, levels] : {std::pair{512, 6}, {64, 5}, {16, 5}, {8, 4}, {7, 1}})
+        EXPECT_EQ(usual_level_count(size), levels) << size;
 }
 
 TEST(PrefilteredCube, TheLayoutHoldsTheFilteredLevelsInOrder) {

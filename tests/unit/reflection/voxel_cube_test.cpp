@@ -71,6 +71,45 @@ TEST(VoxelCube, LookupIsTrilinear) {
     }
 }
 
+TEST(VoxelCube, APartOfTheRangeIsCutOutOfTheWholeAndClampsToItsEnds) {
+    const RoughnessScale scale = RoughnessScale::solved(16);
+    const VoxelCube whole = cube_of_colours(16);
+    const auto place = [](const VoxelCube& cube, std::size_t i) {
+        const int n = cube.size(), v = int(cube.voxel_of_texel()[i]);
+        return glm::ivec3(v % n, v / n % n, v / n / n) * 2 - (n - 1); // from the centre, in half voxels
+    };
+    const auto index = [](const VoxelCube& cube, const glm::ivec3& p) {
+        const glm::ivec3 v = (p + (cube.size() - 1)) / 2;
+        return std::size_t((v.z * cube.size() + v.y) * cube.size() + v.x);
+    };
+    for (const SmoothnessRange range : {SmoothnessRange{0.3, 0.6}, {0, 0.2}, {0, 0}, {0.5, 0.5}, {0.7, 1}, {0, 1}}) {
+        VoxelCube part(LobeKind::phong, scale, range);
+        const VoxelCube::Extent extent = VoxelCube::extent(16, range);
+        EXPECT_EQ(extent.size, part.size());
+        EXPECT_EQ(extent.texels, part.layout().size()) << range.roughest << " " << range.smoothest;
+        EXPECT_LE(double(part.size()), std::max(16 * range.smoothest, 2.0) + 4);
+        std::vector<glm::vec3> texels;
+        for (std::size_t i = 0; i < part.layout().size(); ++i)
+            texels.push_back(whole.voxels()[index(whole, place(part, i))]);
+        part.set_texels(texels);
+        for (std::size_t i = 0, j = 0; i < part.layout().size(); ++i, ++j) { // the same lobes at the same places
+            while (place(whole, j) != place(part, i))
+                ++j;
+            ASSERT_EQ(part.layout().directions[i], whole.layout().directions[j]);
+            ASSERT_EQ(part.layout().parameters[i], whole.layout().parameters[j]);
+        }
+        Random random(8);
+        for (int i = 0; i < 3000; ++i) {
+            const glm::vec3 direction = random_direction(random);
+            const float smoothness = random.uniform();
+            const float within = std::clamp(smoothness, float(range.roughest), float(range.smoothest));
+            ASSERT_LT(glm::distance(part.lookup(direction, smoothness), whole.lookup(direction, within)), 1e-5f);
+        }
+    }
+    EXPECT_THROW(VoxelCube(LobeKind::phong, scale, {0.6, 0.3}), InputError);
+    EXPECT_THROW(VoxelCube(LobeKind::phong, scale, {0.6, 1.3}), InputError);
+}
+
 TEST(VoxelCube, ManyLookupsAreTheSameAsOneByOne) {
     const VoxelCube cube = cube_of_colours(12);
     Random random(5);

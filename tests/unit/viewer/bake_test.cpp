@@ -1,5 +1,6 @@
 // `kokage bake` as a user runs it, on small images and coarse maps.
 #include "common/scene/image_file.h"
+#include "reflection/maps/baked_map.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/harmonics_file.h"
 #include "reflection/maps/map_file.h"
@@ -89,7 +90,7 @@ TEST(Bake, MethodsAgreeAndContainersAreWhatTheirEndingSays) {
     ASSERT_EQ(run_kokage({"bake", "in.exr", "--size", "32", "-o", "m.ktx2"}, folder.path()).status, 0);
     ASSERT_EQ(run_kokage({"bake", "in.exr", "--size", "32", "-o", "m.dds"}, folder.path()).status, 0);
     const PrefilteredCube cube = read_ktx2(folder / "m.ktx2").cube;
-    EXPECT_EQ(cube.levels.size(), 2u);
+    EXPECT_EQ(cube.levels.size(), 5u);
     EXPECT_EQ(cube.kind, LobeKind::ggx);
     EXPECT_EQ(cube.levels[1].texels, read_dds(folder / "m.dds").cube.levels[1].texels);
 }
@@ -244,6 +245,15 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
         {{"in.exr", "--size", "64", "-o", "m.json"}, "maps of texels"},
         {{"in.exr", "--bands", "600", "-o", "m.json"}, "from 1 to 512"},
         {{"in.exr", "--quantity", "light", "-o", "m.json"}, "radiance, irradiance"},
+        {{"in.exr", "--roughness", "0.6,0.3", "-o", "m.exr"}, "smooth first"},
+        {{"in.exr", "--roughness", "0.3,1.1", "-o", "m.exr"}, "smooth first"},
+        {{"in.exr", "--roughness", "0.3,0.6", "--smoothness", "0,0.1", "-o", "m.exr"}, "leave one of them out"},
+        {{"in.exr", "--roughness", "0,0.6", "-o", "m.exr"}, "only cube maps"},
+        {{"in.exr", "--roughness", "0.02,0.6", "-o", "m.exr"}, "roughness 0.03"},
+        {{"in.exr", "--roughness", "0.05,0.6", "--container", "cube", "-o", "m.exr"}, "roughness 0.089"},
+        {{"in.exr", "--smoothness", "0.3,0.3", "--levels", "3", "-o", "m.ktx2"}, "would all be alike"},
+        {{"in.exr", "--levels", "9", "-o", "m.dds"}, "8 levels, not of 9"},
+        {{"in.exr", "--size", "16384", "--format", "float", "-o", "m.ktx2"}, "more than 16 GB"},
         {{"in.exr", "--tolerance", "1e-9", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "nan", "-o", "m.exr"}, "--tolerance"},
         {{"in.exr", "--tolerance", "0.01", "--method", "table", "-o", "m.exr"}, "can't aim at an error"},
@@ -269,6 +279,134 @@ TEST(Bake, WhatCantBeIsRefusedInOneLine) {
         const std::string message = refusal(all);
         EXPECT_NE(message.find(expected), std::string::npos) << expected << "\n" << message;
     }
+}
+
+TEST(Bake, ARangeOfTheCubeIsInItsFileAndLookupsOutsideGiveItsEnds) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const ProgramRun run = run_kokage({"bake", "in.exr", "--container", "cube", "--size", "32", "--smoothness",
+                                       "0.3,0.6", "-o", "m.exr", "--report", "r.json"},
+                                      folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("smoothness 0.3 to 0.6, 22 voxels along an edge"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("of CPU, at the same cost a texel"), std::string::npos) << run.output;
+    const VoxelCube cube = std::get<VoxelCube>(read_map(folder / "m.exr").map);
+    EXPECT_EQ(cube.range().smoothest, 0.6);
+    for (const glm::vec3 direction : {glm::vec3(0, 1, 0), glm::vec3(0.6f, -0.8f, 0)}) {
+        EXPECT_GT(cube.lookup(direction, 0).x, 0.1f);
+        EXPECT_EQ(cube.lookup(direction, 0), cube.lookup(direction, 0.3f));
+        EXPECT_EQ(cube.lookup(direction, 1), cube.lookup(direction, 0.6f));
+    }
+    const Json report = Json::parse(read_text(folder / "r.json"));
+    EXPECT_EQ(report["map"]["size"], 22);
+    EXPECT_EQ(report["map"]["smoothness"], Json({0.3, 0.6}));
+    EXPECT_EQ(report["map"]["filtered_texels"], cube.layout().size());
+    EXPECT_EQ(report["map"]["bytes"], 22 * 22 * 22 * 6);
+    // Compared at lobes that both hold.
+    ASSERT_EQ(run_kokage({"bake", "in.exr", "-o", "whole.exr"}, folder.path()).status, 0);
+    const ProgramRun compared = run_kokage({"compare", "m.exr", "whole.exr", "--report", "c.json"}, folder.path());
+    ASSERT_EQ(compared.status, 0) << compared.errors;
+    const Json c = Json::parse(read_text(folder / "c.json"));
+    const RoughnessScale scale = RoughnessScale::solved(32);
+    EXPECT_NEAR(c["lobes"].front()["parameter"], scale.exponent(0.3), 1e-3);
+    EXPECT_NEAR(c["lobes"].back()["parameter"], scale.exponent(0.6), 1e-3);
+    EXPECT_LT(c["error"]["max_error_255"], 8);
+}
+
+TEST(Bake, LevelsAreToldWithTheirRoughness) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const ProgramRun run =
+        run_kokage({"bake", "in.exr", "--size", "16", "--roughness", "0,0.4", "-o", "m.ktx2", "--report", "r.json"},
+                   folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    EXPECT_NE(run.output.find("level 0: the image itself, 16 texels along an edge"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("level 3: roughness 0.3, 2 texels along an edge"), std::string::npos) << run.output;
+    const Json levels = Json::parse(read_text(folder / "r.json"))["map"]["levels"];
+    const PrefilteredCube cube = read_ktx2(folder / "m.ktx2").cube;
+    ASSERT_EQ(levels.size(), 5u);
+    ASSERT_EQ(cube.levels.size(), 5u);
+    EXPECT_TRUE(levels[0]["is_the_image"]);
+    EXPECT_TRUE(levels[0]["exponent"].is_null());
+    for (std::size_t i = 0; i < 5; ++i) {
+        EXPECT_NEAR(levels[i]["roughness"], 0.1 * double(i), 1e-12);
+        EXPECT_NEAR(cube.levels[i].parameter, 0.1 * double(i), 1e-12);
+        EXPECT_EQ(levels[i]["size"], cube.levels[i].size);
+    }
+    const ProgramRun odd = run_kokage({"bake", "in.exr", "--size", "7", "-o", "m.ktx2"}, folder.path());
+    EXPECT_EQ(odd.status, 0);
+    EXPECT_NE(odd.errors.find("nothing filtered"), std::string::npos) << odd.errors;
+}
+
+TEST(Bake, AToleranceThatTheFormatCantKeepIsSaid) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const auto errors = [&](Words more) {
+        const ProgramRun run = run_kokage(small_bake("in.exr", std::move(more)), folder.path());
+        EXPECT_EQ(run.status, 0);
+        return run.errors;
+    };
+    EXPECT_NE(errors({"--tolerance", "1e-4", "-o", "m.exr"}).find("half rounds by up to 0.00049"), std::string::npos);
+    EXPECT_EQ(errors({"--tolerance", "1e-4", "--format", "float", "-o", "m.exr"}), "");
+    EXPECT_EQ(errors({"--tolerance", "1e-3", "-o", "m.exr"}), "");
+    EXPECT_EQ(errors({"-o", "m.exr"}), "");
+}
+
+TEST(Bake, WhatMemoryCantHoldIsRefusedBeforeAnyWork) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(16, 8));
+    const std::pair<Words, const char*> cases[] = {
+        {{"bake", "in.exr", "--container", "cube", "--size", "1022", "-o", "m.exr"}, "; --size "},
+        {{"bake", "in.exr", "--size", "16384", "-o", "m.ktx2"}, "; --size "},
+        {{"bake", "in.exr", "--detail", "16", "-o", "m.exr"}, "; --detail "},
+    };
+    for (const auto& [words, mend] : cases) {
+        const ProgramRun run = run_kokage(words, folder.path(), {.address_space = std::uint64_t(3) << 30});
+        EXPECT_EQ(run.status, 2);
+        EXPECT_TRUE(is_one_complaint(run.errors)) << run.errors;
+        EXPECT_NE(run.errors.find("of memory, and 2."), std::string::npos) << run.errors;
+        EXPECT_NE(run.errors.find(mend), std::string::npos) << run.errors;
+        EXPECT_EQ(folder.files(), Words({"in.exr"}));
+    }
+}
+
+TEST(Bake, WithoutMemoryItEndsInOneLineAndWithoutAFile) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(64, 32));
+    bool failed = false, worked = false;
+    for (const std::uint64_t megabytes : {500, 650, 800, 4000}) { // from not even for tables to enough
+        const ProgramRun run = run_kokage({"bake", "in.exr", "--container", "cube", "--threads", "2", "-o", "m.exr"},
+                                          folder.path(), {.address_space = megabytes << 20});
+        (run.status == 0 ? worked : failed) = true;
+        if (run.status != 0) {
+            EXPECT_EQ(run.status, 2) << megabytes << " " << run.errors;
+            EXPECT_TRUE(is_one_complaint(run.errors)) << run.errors;
+            EXPECT_NE(run.errors.find("memory"), std::string::npos) << run.errors;
+            EXPECT_EQ(folder.files(), Words({"in.exr"}));
+        }
+    }
+    EXPECT_TRUE(failed && worked);
+}
+
+TEST(Bake, TheMemoryThatItTakesIsWhatWasPlanned) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(32, 16));
+    const auto peak = [&](Words words) {
+        words.insert(words.begin(), {"bake", "in.exr"});
+        words.insert(words.end(), {"--report", "r.json"});
+        EXPECT_EQ(run_kokage(words, folder.path()).status, 0);
+        return double(Json::parse(read_text(folder / "r.json"))["peak_memory_bytes"]);
+    };
+    MapSettings settings;
+    settings.container = MapContainer::voxel_cube;
+    settings.size = 160;
+    const double small = peak({"--container", "cube", "--size", "16", "-o", "m.exr"});
+    const double large = peak({"--container", "cube", "--size", "160", "-o", "m.exr"});
+    EXPECT_NEAR((large - small) / double(plan_map(settings).peak_bytes), 1, 0.25);
+    settings.container = MapContainer::cube_map;
+    settings.lobe = LobeKind::ggx;
+    settings.size = 1024;
+    EXPECT_NEAR((peak({"--size", "1024", "-o", "m.ktx2"}) - small) / double(plan_map(settings).peak_bytes), 1, 0.25);
 }
 
 TEST(Bake, CtrlCLeavesNoHalfFile) {
