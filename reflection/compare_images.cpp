@@ -55,15 +55,16 @@ DifferenceFigures figures(const std::vector<Pair>& pairs) {
     std::vector<float> sizes;
     sizes.reserve(pairs.size());
     double squares = 0;
+    if (floor > 0)
+        result.relative = 0;
     for (const Pair& pair : pairs) {
         const double d = double(pair.a) - double(pair.b), size = std::abs(d);
         result.mean += size / count;
         squares += d * d / count;
         result.bias += d / count;
         result.max = std::max(result.max, size);
-        // Where the reference is black throughout there is nothing to be relative to.
-        if (const double base = std::max(std::abs(double(pair.b)), floor); base > 0)
-            result.relative += size / base / count;
+        if (result.relative)
+            *result.relative += size / std::max(std::abs(double(pair.b)), floor) / count;
         sizes.push_back(float(size));
     }
     result.rms = std::sqrt(squares);
@@ -163,8 +164,11 @@ std::string describe(const ImageComparison& comparison) {
     line.precision(4);
     const DifferenceFigures& f = comparison.all;
     line << "mean " << f.mean << ", rms " << f.rms << ", 95 % below " << f.p95 << ", max " << f.max << " at pixel ("
-         << comparison.max_x << ", " << comparison.max_y << "), bias " << f.bias << ", relative " << 100 * f.relative
-         << " %";
+         << comparison.max_x << ", " << comparison.max_y << "), bias " << f.bias << ", relative ";
+    if (f.relative)
+        line << 100 * *f.relative << " %";
+    else
+        line << "undefined (the reference is black)";
     if (comparison.skipped_values > 0)
         line << "; " << comparison.skipped_values << " values are not finite and not counted";
     return line.str();

@@ -4,18 +4,20 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 
 namespace kokage {
 
 /// Figures of one channel or of all together; d = a - b.
 struct DifferenceFigures {
-    double mean = 0;     ///< of |d|
-    double rms = 0;      ///< root of the mean of d²
-    double p95 = 0;      ///< 95th percentile of |d|
-    double max = 0;      ///< of |d|
-    double bias = 0;     ///< mean of d
-    double relative = 0; ///< mean of |d| / max(|b|, 0.05 x mean of |b|): as errors of leaves are given
+    double mean = 0; ///< of |d|
+    double rms = 0;  ///< root of the mean of d²
+    double p95 = 0;  ///< 95th percentile of |d|
+    double max = 0;  ///< of |d|
+    double bias = 0; ///< mean of d
+    /// Mean of |d| / max(|b|, 0.05 x mean of |b|): as errors of leaves are given. None where b is black throughout.
+    std::optional<double> relative;
 };
 
 struct ImageComparison {

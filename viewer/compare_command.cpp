@@ -17,6 +17,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 namespace kokage {
 namespace {
@@ -31,9 +32,16 @@ void print_figures(const char* what, const DifferenceFigures& f, double unit) {
                 unit * f.rms, unit * f.p95, unit * f.max, unit * f.bias);
 }
 
+/// null for what is undefined.
+Json json_of(const std::optional<double>& figure) {
+    return figure ? Json(*figure) : Json();
+}
+
+constexpr const char* kUndefined = "undefined, B is black";
+
 Json figures_json(const DifferenceFigures& f) {
     return {{"mean", f.mean}, {"rms", f.rms},   {"p95", f.p95},
-            {"max", f.max},   {"bias", f.bias}, {"mean_relative", f.relative}};
+            {"max", f.max},   {"bias", f.bias}, {"mean_relative", json_of(f.relative)}};
 }
 
 /// What a report says of the error map.
@@ -77,7 +85,10 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
         std::fprintf(stderr, "kokage: warning: %s\n", unlike.c_str());
     const ImageComparison whole = compare_images(picture, reference);
     const ImageComparison shown = compare_images(clamped(picture), clamped(reference));
-    std::printf("%-20s %.4g %%\n", "mean relative error", 100 * whole.all.relative);
+    if (whole.all.relative)
+        std::printf("%-20s %.4g %%\n", "mean relative error", 100 * *whole.all.relative);
+    else
+        std::printf("%-20s %s\n", "mean relative error", kUndefined);
     print_figures("error", whole.all, 1);
     print_figures("error of 256", shown.all, 255);
     std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
@@ -138,14 +149,19 @@ void compare_trees(const CompareOptions& options, const CommandContext& context)
 Json difference_json(const MapDifference& d) {
     return {{"mean_error_255", d.mean_255},
             {"max_error_255", d.max_255},
-            {"mean_relative_error", d.mean_relative},
-            {"max_relative_error", d.max_relative},
+            {"mean_error", d.mean_absolute},
+            {"max_error", d.max_absolute},
+            {"mean_relative_error", json_of(d.mean_relative)},
+            {"max_relative_error", json_of(d.max_relative)},
             {"worst_direction", {d.worst_direction.x, d.worst_direction.y, d.worst_direction.z}}};
 }
 
 void print_difference(const char* what, const MapDifference& d) {
-    std::printf("%-20s of 256: mean %.4g, largest %.4g; relative: mean %.4g %%, largest %.4g %%\n", what, d.mean_255,
-                d.max_255, 100 * d.mean_relative, 100 * d.max_relative);
+    std::printf("%-20s of 256: mean %.4g, largest %.4g; ", what, d.mean_255, d.max_255);
+    if (d.max_relative)
+        std::printf("relative: mean %.4g %%, largest %.4g %%\n", 100 * *d.mean_relative, 100 * *d.max_relative);
+    else
+        std::printf("radiance: mean %.4g, largest %.4g; relative: %s\n", d.mean_absolute, d.max_absolute, kUndefined);
 }
 
 void compare_reflection_maps(const CompareOptions& options, const CommandContext& context) {

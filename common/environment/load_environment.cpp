@@ -6,20 +6,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace kokage {
 namespace {
 
 constexpr float largest_radiance = 1e32f; ///< sums over the sphere, and luminance, stay finite in float
 
-enum class Fault { none, nan, infinite, negative };
+enum class Fault { none, nan, too_large, negative }; ///< too large: infinite ones, too
 
 Fault fault_of(float value) {
     if (std::isnan(value))
         return Fault::nan;
     if (value < 0)
         return Fault::negative;
-    return value > largest_radiance ? Fault::infinite : Fault::none;
+    return value > largest_radiance ? Fault::too_large : Fault::none;
 }
 
 std::string place(int x, int y) {
@@ -110,7 +111,7 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
                 seen[std::size_t(fault)] = true;
             }
             report.nan_pixels += seen[std::size_t(Fault::nan)];
-            report.infinite_pixels += seen[std::size_t(Fault::infinite)];
+            report.infinite_pixels += seen[std::size_t(Fault::too_large)];
             report.negative_pixels += seen[std::size_t(Fault::negative)];
         }
     if (bad.empty())
@@ -118,9 +119,11 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
     report.first_bad_x = bad.front().x;
     report.first_bad_y = bad.front().y;
     if (strict) {
-        const float value = image.at(bad.front().x, bad.front().y)[bad.front().channel];
-        throw InputError("environment '" + name + "': " + place(bad.front().x, bad.front().y) + " is " +
-                         std::to_string(value) + " in channel " + std::to_string(bad.front().channel) + ", " +
+        char value[64];
+        std::snprintf(value, sizeof value, bad.front().fault == Fault::too_large ? "%g (too large, above 1e32)" : "%g",
+                      double(image.at(bad.front().x, bad.front().y)[bad.front().channel]));
+        throw InputError("environment '" + name + "': " + place(bad.front().x, bad.front().y) + " is " + value +
+                         " in channel " + std::to_string(bad.front().channel) + ", " +
                          counted(bad.size(), "such value", "such values") +
                          " in all; mend the image, or leave out --strict to have them repaired");
     }
@@ -129,11 +132,11 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
         const auto c = std::size_t(value.channel);
         if (value.fault != Fault::negative && !any_good[c])
             throw InputError("environment '" + name + "': channel " + std::to_string(c) +
-                             " has no finite, non-negative value at all");
+                             " has no value from 0 to 1e32 at all; give an image of radiance");
         if (value.fault == Fault::nan)
             holes[c].emplace_back(value.x, value.y);
         else
-            image.at(value.x, value.y)[value.channel] = value.fault == Fault::infinite ? largest[c] : 0.f;
+            image.at(value.x, value.y)[value.channel] = value.fault == Fault::too_large ? largest[c] : 0.f;
     }
     for (int c = 0; c < 3; ++c)
         fill_inwards(image, c, std::move(holes[std::size_t(c)]));
@@ -153,7 +156,7 @@ Environment environment_from_image(Image image, const std::string& name, Environ
     };
     if (report.first_bad_x >= 0)
         add_warning("'" + name + "' has bad pixels, which were repaired: " + std::to_string(report.nan_pixels) +
-                    " NaN, " + std::to_string(report.infinite_pixels) + " infinite, " +
+                    " NaN, " + std::to_string(report.infinite_pixels) + " infinite or too large (above 1e32), " +
                     std::to_string(report.negative_pixels) + " negative; the first is " +
                     place(report.first_bad_x, report.first_bad_y));
     if (!shape.empty())

@@ -57,23 +57,32 @@ Sums add_up(std::span<const glm::vec3> directions, std::span<const glm::vec3> a,
     for (std::size_t i = 0; i < a.size(); ++i)
         for (int c = 0; c < 3; ++c) {
             sums.reference += std::abs(double(b[i][c]));
-            sums.absolute += std::abs(double(a[i][c]) - double(b[i][c]));
+            const double absolute = std::abs(double(a[i][c]) - double(b[i][c]));
+            sums.absolute += absolute;
+            if (absolute > difference.max_absolute) {
+                difference.max_absolute = absolute;
+                difference.worst_direction = directions[i];
+            }
             const double shown = 255 * std::abs(double(std::clamp(a[i][c], 0.f, 1.f) - std::clamp(b[i][c], 0.f, 1.f)));
             sums.absolute_255 += shown;
             difference.max_255 = std::max(difference.max_255, shown);
         }
     const double count = 3 * double(a.size()), floor = 1e-3 * sums.reference / count;
+    difference.mean_255 = sums.absolute_255 / count;
+    difference.mean_absolute = sums.absolute / count;
+    if (!(floor > 0))
+        return sums; // black: nothing to be relative to
+    difference.mean_relative = sums.absolute / sums.reference;
+    difference.max_relative = 0;
     for (std::size_t i = 0; i < a.size(); ++i)
         for (int c = 0; c < 3; ++c) {
             const double d = std::abs(double(a[i][c]) - double(b[i][c]));
-            const double relative = d == 0 ? 0 : d / std::max(std::abs(double(b[i][c])), floor);
-            if (relative > difference.max_relative) {
+            const double relative = d / std::max(std::abs(double(b[i][c])), floor);
+            if (relative > *difference.max_relative) {
                 difference.max_relative = relative;
                 difference.worst_direction = directions[i];
             }
         }
-    difference.mean_255 = sums.absolute_255 / count;
-    difference.mean_relative = sums.absolute == 0 ? 0 : sums.absolute / sums.reference;
     return sums;
 }
 
@@ -97,15 +106,22 @@ MapComparison compare_maps(const FilteredMap& a, const FilteredMap& b, int direc
         all.absolute += sums.absolute;
         all.reference += sums.reference;
         result.all.max_255 = std::max(result.all.max_255, lobe.difference.max_255);
-        if (result.lobes.empty() || lobe.difference.max_relative > result.all.max_relative) {
+        const bool worse = lobe.difference.max_relative || result.all.max_relative
+                               ? lobe.difference.max_relative > result.all.max_relative
+                               : lobe.difference.max_absolute > result.all.max_absolute;
+        if (result.lobes.empty() || worse) {
             result.all.max_relative = lobe.difference.max_relative;
             result.all.worst_direction = lobe.difference.worst_direction;
             result.worst_parameter = parameter;
         }
+        result.all.max_absolute = std::max(result.all.max_absolute, lobe.difference.max_absolute);
         result.lobes.push_back(lobe);
     }
-    result.all.mean_255 = all.absolute_255 / (3 * double(around.size()) * double(parameters.size()));
-    result.all.mean_relative = all.absolute == 0 ? 0 : all.absolute / all.reference;
+    const double count = 3 * double(around.size()) * double(parameters.size());
+    result.all.mean_255 = all.absolute_255 / count;
+    result.all.mean_absolute = all.absolute / count;
+    if (result.all.max_relative)
+        result.all.mean_relative = all.absolute / all.reference;
     return result;
 }
 

@@ -3,16 +3,18 @@
 #include "common/scene/image.h"
 #include "reflection/maps/filtered_map.h"
 
+#include <optional>
 #include <vector>
 
 namespace kokage {
 
 /// Over all directions of a set and all channels, all directions weighing the same; d = a - b.
 struct MapDifference {
-    double mean_255 = 0, max_255 = 0; ///< of |d| with both clamped to [0,1], times 255
-    double mean_relative = 0;         ///< mean |d| over mean |b|
-    double max_relative = 0;          ///< of |d| / max(|b|, 1e-3 x mean |b|)
-    glm::vec3 worst_direction{0};     ///< where max_relative is
+    double mean_255 = 0, max_255 = 0;           ///< of |d| with both clamped to [0,1], times 255
+    double mean_absolute = 0, max_absolute = 0; ///< of |d|
+    std::optional<double> mean_relative;        ///< mean |d| over mean |b|; none where b is black
+    std::optional<double> max_relative;         ///< of |d| / max(|b|, 1e-3 x mean |b|); none where b is black
+    glm::vec3 worst_direction{0};               ///< where max_relative is, or else max_absolute
 };
 
 struct MapComparison {
@@ -21,7 +23,7 @@ struct MapComparison {
         MapDifference difference;
     };
     MapDifference all;          ///< means over all lobes of `lobes`, the largest of all
-    double worst_parameter = 0; ///< the lobe where all.max_relative is
+    double worst_parameter = 0; ///< the lobe of all.worst_direction
     std::vector<OfLobe> lobes;  ///< from the least parameter to the largest
     std::size_t directions = 0; ///< of each lobe: a Fibonacci sphere
 };

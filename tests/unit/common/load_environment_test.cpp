@@ -96,6 +96,22 @@ TEST_F(LoadEnvironment, StrictRefusesWithThePlace) {
     EXPECT_NO_THROW(environment_from_image(smooth_image(32, 16), "some.exr", report, {.strict = true}));
 }
 
+TEST_F(LoadEnvironment, TooLargeIsNotCalledInfinite) {
+    Image image = smooth_image(32, 16);
+    image.at(7, 4)[2] = 3e33f;
+    EnvironmentReport report;
+    environment_from_image(image, "some.exr", report);
+    EXPECT_NE(report.note.find("0 NaN, 1 infinite or too large (above 1e32), 0 negative"), std::string::npos)
+        << report.note;
+    try {
+        environment_from_image(image, "some.exr", report, {.strict = true});
+        FAIL() << "accepted";
+    } catch (const InputError& error) {
+        EXPECT_NE(std::string(error.what()).find("is 3e+33 (too large, above 1e32)"), std::string::npos)
+            << error.what();
+    }
+}
+
 TEST_F(LoadEnvironment, RefusesAnImageWithoutAGoodPixel) {
     Image image(4, 2, 3);
     for (float& value : image.pixels)

@@ -17,7 +17,7 @@ TEST(CompareImages, GivesTheFiguresOfAKnownDifference) {
     EXPECT_NEAR(result.all.mean, 1.5 / 6, 1e-9);
     EXPECT_NEAR(result.all.rms, std::sqrt(1.25 / 6), 1e-9);
     EXPECT_NEAR(result.all.bias, -0.5 / 6, 1e-9);
-    EXPECT_NEAR(result.all.relative, (0.5 + 0.5) / 6, 1e-9);
+    EXPECT_NEAR(result.all.relative.value(), (0.5 + 0.5) / 6, 1e-9);
     EXPECT_EQ(result.all.max, 1);
     EXPECT_EQ(result.max_x, 1);
     EXPECT_EQ(result.max_y, 0);

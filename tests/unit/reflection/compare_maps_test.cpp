@@ -38,11 +38,24 @@ TEST(CompareMaps, AMapAgainstItself) {
 
 TEST(CompareMaps, AHundredthBrighterIsAHundredthEverywhere) {
     const MapComparison c = compare_maps(smooth_shells(1, 100, 1.01f), smooth_shells(1, 100), 2000, 5);
-    EXPECT_NEAR(c.all.mean_relative, 0.01, 1e-4);
-    EXPECT_NEAR(c.all.max_relative, 0.01, 1e-4);
+    EXPECT_NEAR(c.all.mean_relative.value(), 0.01, 1e-4);
+    EXPECT_NEAR(c.all.max_relative.value(), 0.01, 1e-4);
+    EXPECT_NEAR(c.all.mean_absolute, 0.01 * 0.5, 1e-4);
+    EXPECT_LE(c.all.max_absolute, 0.01 * 0.7 * 1.01);
     EXPECT_NEAR(c.all.mean_255, 0.01 * 0.5 * 255, 0.01);
     EXPECT_GT(c.all.max_255, c.all.mean_255);
     EXPECT_LT(c.all.max_255, 0.01 * 0.7 * 255 * 1.01);
+}
+
+TEST(CompareMaps, AgainstABlackReferenceNothingIsRelative) {
+    const MapComparison c = compare_maps(smooth_shells(1, 100), smooth_shells(1, 100, 0), 500, 3);
+    EXPECT_FALSE(c.all.mean_relative);
+    EXPECT_FALSE(c.all.max_relative);
+    EXPECT_FALSE(c.lobes[1].difference.max_relative);
+    EXPECT_NEAR(c.all.mean_absolute, 0.5, 0.01);
+    EXPECT_GT(c.all.max_absolute, 0.55);
+    EXPECT_GT(glm::length(c.all.worst_direction), 0.9f);
+    EXPECT_EQ(c.worst_parameter, 100) << "where the map reaches farthest";
 }
 
 TEST(CompareMaps, LobesAreThoseThatBothHold) {

@@ -78,6 +78,29 @@ TEST(Compare, ReflectionMapsOfDifferentFilesAreCompared) {
     }
 }
 
+TEST(Compare, AgainstABlackReferenceRelativeErrorsAreUndefined) {
+    TemporaryFolder folder;
+    save_image(folder / "a.exr", grey_ramp(0));
+    save_image(folder / "black.exr", Image(8, 4, 3));
+    const ProgramRun pictures = run_kokage({"compare", "a.exr", "black.exr", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(pictures.status, 0) << pictures.errors;
+    EXPECT_NE(pictures.output.find("mean relative error  undefined, B is black"), std::string::npos) << pictures.output;
+    EXPECT_TRUE(nlohmann::json::parse(read_text(folder / "r.json"))["error"]["mean_relative"].is_null());
+    for (const char* name : {"a", "black"})
+        ASSERT_EQ(run_kokage({"bake", std::string(name) + ".exr", "--smoothness", "0,0.1", "-o",
+                              std::string(name) + "-map.exr"},
+                             folder.path())
+                      .status,
+                  0);
+    const ProgramRun maps = run_kokage({"compare", "a-map.exr", "black-map.exr", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(maps.status, 0) << maps.errors;
+    EXPECT_NE(maps.output.find("relative: undefined, B is black"), std::string::npos) << maps.output;
+    EXPECT_EQ(maps.output.find("inf"), std::string::npos) << maps.output;
+    const auto error = nlohmann::json::parse(read_text(folder / "r.json"))["error"];
+    EXPECT_TRUE(error["max_relative_error"].is_null());
+    EXPECT_NEAR(double(error["mean_error"]), 0.5, 0.02);
+}
+
 TEST(Compare, LinearAgainstDisplayColoursIsWarnedOf) {
     TemporaryFolder folder;
     save_image(folder / "a.exr", grey_ramp(0));
