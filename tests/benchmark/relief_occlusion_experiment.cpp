@@ -14,6 +14,8 @@ namespace kokage {
 namespace {
 
 const ReliefScale kScale{glm::vec2(1.f), kBenchReliefDepth};
+/// Rays start this much above the surface: kShadowLift would take them out of a steep texel's own shade.
+constexpr float kLift = 2e-6f;
 
 /// A point of the surface, and the normal that its light is weighted about.
 struct OpenPoint {
@@ -71,7 +73,7 @@ std::vector<double> true_openness(const ReliefTracer& tracer, std::span<const Op
         for (std::size_t k = begin; k < end; ++k) {
             ReliefHit from;
             from.coordinate = points[k].coordinate;
-            from.depth = points[k].depth;
+            from.depth = points[k].depth + kShadowLift - kLift;
             for (std::uint32_t r = 0; r < rays; ++r)
                 sky[r] = relief_shadow_ray(
                     from, turned_about(points[k].normal, cosine_direction(multi_jittered(r, rays, std::uint32_t(k)))),
