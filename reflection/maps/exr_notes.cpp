@@ -95,6 +95,9 @@ ExrHeader read_exr_header(const std::filesystem::path& path) {
     if (spec.deep || spec.depth > 1 || spec.nchannels != 3 || spec.width < 1 || spec.height < 1 || spec.x != 0 ||
         spec.y != 0)
         fail_to_read(path, "it is no plain picture of three channels, as maps are");
+    if (spec.tile_width > spec.width || spec.tile_height > spec.height)
+        fail_to_read(path, "it is damaged: its tiles of " + std::to_string(spec.tile_width) + " x " +
+                               std::to_string(spec.tile_height) + " pixels are larger than itself");
     // Deflate packs at most 1032 bytes into one (zlib's manual), and a channel has 2 bytes a pixel or more: a header
     // that announces more is damaged.
     std::error_code error;
