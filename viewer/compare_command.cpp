@@ -233,6 +233,10 @@ Command compare_command(CLI::App& program) {
                 for (const std::filesystem::path& file : {options->picture, options->reference})
                     if (!std::filesystem::exists(file))
                         throw InputError("there is no file '" + file.string() + "'");
+                for (const std::filesystem::path& file : {options->picture, options->reference})
+                    if (lower_ending(file) == ".json")
+                        throw InputError("'" + file.string() +
+                                         "' holds no picture, map or tree; spherical harmonics can't be compared here");
                 const bool tree = is_tree(options->picture), map = !tree && is_reflection_map(options->picture);
                 if (tree != is_tree(options->reference) || map != is_reflection_map(options->reference))
                     throw InputError("'" + options->picture.string() + "' and '" + options->reference.string() +

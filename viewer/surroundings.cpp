@@ -4,6 +4,7 @@
 #include "common/environment/load_environment.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
+#include "reflection/maps/map_file.h"
 #include "viewer/values.h"
 
 #include <algorithm>
@@ -182,6 +183,8 @@ Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, 
     EnvironmentLoading loading;
     loading.strict = s.strict;
     loading.split = split;
+    if (!made)
+        check_is_no_map(s.environment);
     Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
     for (const std::string& light : s.lights)
         add_light(environment, light);

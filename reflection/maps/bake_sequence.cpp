@@ -4,6 +4,7 @@
 #include "common/services/only_stops.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
+#include "reflection/maps/map_file.h"
 #include "reflection/maps/sequence_journal.h"
 
 #include <algorithm>
@@ -135,6 +136,7 @@ class SequenceBake {
         EnvironmentLoading loading = settings_.loading;
         loading.split = false;
         EnvironmentReport loaded;
+        check_is_no_map(file);
         Environment environment = load_environment(file, loaded, loading);
         const Image& pixels = environment.remainder;
         if (width_ > 0 && (pixels.width != width_ || pixels.height != height_))

@@ -30,6 +30,19 @@ void warn_of_clamped(std::span<const glm::vec3> texels, TexelFormat format, Work
     warn_of_clamped(std::size_t(std::count_if(texels.begin(), texels.end(), too_bright)), format, report);
 }
 
+/// Half floats and shared exponents end at steps of 2^-24: what is below 2^-14 loses digits there.
+void warn_of_dim(std::span<const glm::vec3> texels, TexelFormat format, WorkReport& report) {
+    constexpr float kLeastExact = 1.f / 16384;
+    if (format == TexelFormat::float_rgb)
+        return;
+    float brightest = 0;
+    for (const glm::vec3& t : texels)
+        brightest = std::max({brightest, t.x, t.y, t.z});
+    if (brightest > 0 && brightest < kLeastExact)
+        report.warnings.push_back("all texels are so dim that the format " + std::string(texel_format_name(format)) +
+                                  " keeps few digits of them, or none; --format float holds them");
+}
+
 class Shells final : public BakedMap {
   public:
     explicit Shells(const MapSettings& settings)
@@ -44,6 +57,7 @@ class Shells final : public BakedMap {
     std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
                                  WorkReport& report) const override {
         warn_of_clamped(filtered_, map_.settings().format, report);
+        warn_of_dim(filtered_, map_.settings().format, report);
         return packed_map(path, map_, made_from, compression_);
     }
 
@@ -69,6 +83,7 @@ class Voxels final : public BakedMap {
     std::function<void()> packed(const std::filesystem::path& path, const std::string& made_from,
                                  WorkReport& report) const override {
         warn_of_clamped(filtered_, format_, report);
+        warn_of_dim(filtered_, format_, report);
         return packed_map(path, cube_, format_, made_from, compression_);
     }
 
@@ -99,6 +114,8 @@ class CubeMap final : public BakedMap {
         const auto made_by = lower_ending(path) == ".dds" ? dds_bytes : ktx2_bytes;
         CubeFileBytes made = made_by(cube_, format_, path.string());
         warn_of_clamped(made.summary.clamped_texels, format_, report);
+        // Filtering makes nothing brighter: the first level has the brightest texel.
+        warn_of_dim(cube_.levels.front().texels, format_, report);
         return [path, bytes = std::move(made.bytes)] { write_file(path, std::span(bytes)); };
     }
 

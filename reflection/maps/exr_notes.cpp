@@ -71,6 +71,7 @@ void write_noted_exr(const std::filesystem::path& path, const ExrPixels& pixels,
     OIIO::ImageSpec spec(pixels.width, pixels.height, 3, type);
     spec.tile_width = spec.tile_height = pixels.tile;
     spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("DateTime", ""); // else the time of writing: the same map would be other bytes each time
     spec.attribute("compression", compression == ExrCompression::zip   ? "zip"
                                   : compression == ExrCompression::rle ? "rle"
                                                                        : "none");

@@ -1,6 +1,7 @@
 #include "reflection/maps/map_file.h"
 
 #include "common/services/error.h"
+#include "common/services/named_file.h"
 #include "reflection/maps/exr_notes.h"
 #include "reflection/maps/shell_atlas.h"
 
@@ -231,6 +232,13 @@ bool is_map_file(const std::filesystem::path& path) {
     } catch (const InputError&) {
         return false;
     }
+}
+
+void check_is_no_map(const std::filesystem::path& path) {
+    if (lower_ending(path) == ".exr" && is_map_file(path))
+        throw InputError("'" + path.string() +
+                         "' is a reflection map that kokage bake wrote, no image of surroundings; give the image that "
+                         "it was made from");
 }
 
 } // namespace kokage

@@ -51,5 +51,7 @@ struct MapFile {
 MapFile read_map(const std::filesystem::path& path);
 /// Whether it is an EXR file that says that it is such a map (it may be damaged all the same).
 bool is_map_file(const std::filesystem::path& path);
+/// Throws InputError if it is: maps would pass for images of surroundings, as they are pictures to EXR readers.
+void check_is_no_map(const std::filesystem::path& path);
 
 } // namespace kokage

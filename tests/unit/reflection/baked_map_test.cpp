@@ -258,6 +258,29 @@ TEST(BakedMap, SaysHowManyTexelsTheFormatCutsOff) {
     }
 }
 
+TEST(BakedMap, SaysWhereTheFormatHasNoDigitsForDimLight) {
+    const TemporaryFolder folder;
+    Environment environment = stripes();
+    for (float& value : environment.remainder.pixels)
+        value *= 1e-6f;
+    for (const auto& [container, file] : {std::pair(MapContainer::shells, "m.exr"),
+                                          {MapContainer::voxel_cube, "m.exr"},
+                                          {MapContainer::cube_map, "m.ktx2"}}) {
+        MapSettings settings;
+        settings.container = container;
+        settings.size = container == MapContainer::shells ? 0 : 16;
+        settings.smoothness = SmoothnessRange{0.05, 0.1};
+        WorkReport report;
+        baked(settings, environment)->write(folder / file, "", report);
+        ASSERT_EQ(report.warnings.size(), 1u) << file;
+        EXPECT_NE(report.warnings[0].find("so dim"), std::string::npos) << report.warnings[0];
+        settings.format = TexelFormat::float_rgb;
+        WorkReport of_floats;
+        baked(settings, environment)->write(folder / file, "", of_floats);
+        EXPECT_TRUE(of_floats.warnings.empty());
+    }
+}
+
 TEST(BakedMap, SurroundingsThatAreTheSameEverywhereAreNotFiltered) {
     Environment environment;
     environment.remainder = Image(8, 4, 3);

@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
 namespace kokage {
 namespace {
@@ -32,7 +33,7 @@ Words small_bake(const std::string& environment, Words more) {
     return words;
 }
 
-/// What is in a map of shells; files hold the time of their writing, too.
+/// What is in a map of shells.
 std::vector<std::byte> texels_of(const std::filesystem::path& file) {
     const MapFile map = read_map(file);
     const std::span<const std::byte> texels = std::get<ShellMap>(map.map).texels();
@@ -407,6 +408,29 @@ TEST(Bake, TheMemoryThatItTakesIsWhatWasPlanned) {
     settings.lobe = LobeKind::ggx;
     settings.size = 1024;
     EXPECT_NEAR((peak({"--size", "1024", "-o", "m.ktx2"}) - small) / double(plan_map(settings).peak_bytes), 1, 0.25);
+}
+
+TEST(Bake, AMapIsNoImageOfSurroundings) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(16, 8));
+    ASSERT_EQ(run_kokage(small_bake("in.exr", {"-o", "m.exr"}), folder.path()).status, 0);
+    const ProgramRun run = run_kokage(small_bake("m.exr", {"-o", "again.exr"}), folder.path());
+    EXPECT_EQ(run.status, 2);
+    EXPECT_NE(run.errors.find("'m.exr' is a reflection map"), std::string::npos) << run.errors;
+    const ProgramRun video = run_kokage(small_bake(".", {"-o", "maps%03d.ktx2"}), folder.path());
+    EXPECT_EQ(video.status, 2) << "maps would lie among the frames";
+    std::ofstream(folder / "list.txt") << "in.exr\nm.exr\n";
+    const ProgramRun list = run_kokage(small_bake("list.txt", {"-o", "%03d.ktx2"}), folder.path());
+    EXPECT_NE(list.errors.find("frame 2 is broken and left out: 'm.exr' is a reflection map"), std::string::npos)
+        << list.errors;
+}
+
+TEST(Bake, TheSameMapIsTheSameBytesWheneverItIsWritten) {
+    const TemporaryFolder folder;
+    save_image(folder / "in.exr", gradient_image(16, 8));
+    ASSERT_EQ(run_kokage(small_bake("in.exr", {"-o", "m.exr"}), folder.path()).status, 0);
+    const std::regex time("\\d{4}:\\d\\d:\\d\\d \\d\\d:\\d\\d:\\d\\d");
+    EXPECT_FALSE(std::regex_search(read_text(folder / "m.exr").substr(0, 2000), time));
 }
 
 TEST(Bake, CtrlCLeavesNoHalfFile) {
