@@ -39,10 +39,11 @@ using Mask = hn::Mask<Tag>;
 constexpr std::size_t kLanes = hn::MaxLanes(Tag());
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
-constexpr float kFarAway = 1e30f;         ///< times of borders that are never reached
-constexpr float kSettled = 0.125f;        ///< texels between a doubt and a certain hit that settles it
-constexpr float kMostTravel = 1 << 14;    ///< texels that single precision is trusted with
-constexpr double kCertainlyBelow = 1.125; ///< depth: below all surface, whatever the error
+constexpr float kFarAway = 1e30f;           ///< times of borders that are never reached
+constexpr float kSettled = 0.125f;          ///< texels between a doubt and a certain hit that settles it
+constexpr float kSettledDepth = 1.f / 1024; ///< depth between both: steep rays beside walls get deep within a texel
+constexpr float kMostTravel = 1 << 14;      ///< texels that single precision is trusted with
+constexpr double kCertainlyBelow = 1.125;   ///< depth: below all surface, whatever the error
 
 HWY_INLINE Vec Constant(float value) {
     return hn::Set(Tag(), value);
@@ -585,7 +586,7 @@ class Stream {
             const Vec most = hn::Max(hn::Max(c, at_end), hn::IfThenElse(arches, at(top), c));
             surely = hn::And(maybe, hn::Ge(most, twice));
         } else {
-            const Vec settled = hn::Min(length, hn::Add(s, hn::Div(Constant(kSettled), g.speed)));
+            const Vec settled = hn::Min(length, hn::Add(s, hn::Div(Constant(kSettled), SettlingSpeed(g))));
             surely = hn::And(maybe, hn::Ge(at(settled), twice));
             // From the raised root to the true one.
             const Vec slope = hn::MulAdd(hn::Add(a, a), s, b);
@@ -601,7 +602,7 @@ class Stream {
             } else {
                 const Vec t = hn::Add(g.t, s);
                 const Mask settles = hn::Or(hn::Eq(g.doubt, Constant(kInfinity)),
-                                            hn::Le(hn::Mul(hn::Sub(t, g.doubt), g.speed), Constant(kSettled)));
+                                            hn::Le(hn::Mul(hn::Sub(t, g.doubt), SettlingSpeed(g)), Constant(kSettled)));
                 WriteHits(g, hn::And(surely, settles), t, d00, du, dv, duv, cell_x, cell_y);
                 WriteDoubtful(g, hn::AndNot(settles, surely));
             }
@@ -615,12 +616,17 @@ class Stream {
         Settle(g, done, misses);
     }
 
+    /// How fast a doubt is left behind, in units of kSettled: by texels or by depth, whichever is faster.
+    HWY_INLINE static Vec SettlingSpeed(const Lanes& g) {
+        return hn::Max(g.speed, hn::Mul(hn::Abs(g.ddepth), Constant(kSettled / kSettledDepth)));
+    }
+
     /// After a step: rays of `done` have come to their end, those of `passed` have left a node or cell without a hit.
     HWY_INLINE void Settle(Lanes& g, Mask done, Mask passed) {
         const Tag d;
         // No certain hit followed a doubt, or the way was too long for single precision.
         const Mask doubted = hn::Lt(g.doubt, Constant(kInfinity));
-        Mask late = hn::And(doubted, hn::Gt(hn::Mul(hn::Sub(g.t, g.doubt), g.speed), Constant(kSettled)));
+        Mask late = hn::And(doubted, hn::Gt(hn::Mul(hn::Sub(g.t, g.doubt), SettlingSpeed(g)), Constant(kSettled)));
         if constexpr (kAny) // any later hit settles it
             late = hn::Lt(g.speed, hn::Zero(d));
         const Mask cut = hn::Ge(hn::Mul(g.t, g.speed), Constant(kMostTravel * 0.999f));

@@ -242,6 +242,26 @@ TEST(ReliefExact, GivesARayTheSameHitWhateverIsBesideIt) {
     tracer->trace({}, {});
 }
 
+TEST(ReliefExact, HitsAtTheTrueDepthAlongWallsOfATexel) {
+    // Steep rays that run down beside a wall: a small part of a texel across is much depth.
+    RandomRelief random(24);
+    HeightField field{256, 256, HeightWrap::repeat, std::vector<float>(256 * 256)};
+    for (float& depth : field.depths)
+        depth = random.within(0, 1);
+    const auto tracer = make_exact_tracer(field);
+    std::vector<ReliefRay> rays(60000);
+    for (ReliefRay& ray : rays) {
+        const float angle = random.within(0, 6.2832f), tangent = random.within(0.001f, 0.06f);
+        ray = {{random.within(0, 1), random.within(0, 1), 0},
+               {tangent * std::cos(angle), tangent * std::sin(angle), 1}};
+    }
+    std::vector<ReliefHit> hits(rays.size());
+    tracer->trace(rays, hits);
+    for (std::size_t r = 0; r < rays.size(); ++r)
+        EXPECT_NEAR(hits[r].t, true_relief_hit(field, rays[r]).t, 0.0015) << text(rays[r]);
+    EXPECT_LT(tracer->doubtful_rays(), rays.size() / 50);
+}
+
 TEST(ReliefExact, LeavesFewRaysToDoublePrecision) {
     RandomRelief random(22);
     HeightField field = random.field(128, 128, HeightWrap::repeat);
