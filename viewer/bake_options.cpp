@@ -3,6 +3,7 @@
 #include "common/services/memory.h"
 #include "common/services/named_file.h"
 #include "common/services/output_file.h"
+#include "reflection/maps/bake_sequence.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/image_sequence.h"
 #include "viewer/data_folder.h"
@@ -98,7 +99,8 @@ void add_method_options(CLI::App& app, BakeOptions& o) {
         ->group("Method");
     app.add_option("--tolerance", o.tolerance,
                    "spectral: largest error of filtering, as a share of 1 or of the brightest light left when lamps "
-                   "are split off (otherwise 0.00015). Rounding to the --format comes to that: 0.0005 of a value as "
+                   "are split off (otherwise 0.00015, video 0.0003). Rounding to the --format comes to that: 0.0005 of "
+                   "a value as "
                    "half, 0.002 as shared-exponent, nothing as float")
         ->type_name("E")
         ->group("Method");
@@ -301,7 +303,7 @@ void complete_method(BakeOptions& o) {
         refuse(o.threshold ? "--threshold" : "--weights", "it shapes the table alone; add --method table");
     if (!o.stored.empty() && !spectral && !table)
         refuse("--stored", "brute-force prepares nothing that could be kept; leave it out");
-    o.baker.tolerance = o.tolerance.value_or(o.baker.tolerance);
+    o.baker.tolerance = o.tolerance.value_or(o.is_sequence ? kVideoTolerance : o.baker.tolerance);
     o.baker.table.threshold = o.threshold.value_or(o.baker.table.threshold);
     o.baker.table.weights = table_weights_from_name(o.weights);
     o.baker.stored_setup = o.stored;
@@ -321,7 +323,6 @@ void complete_compression(BakeOptions& o) {
 }
 
 void complete_outputs(BakeOptions& o) {
-    o.is_sequence = names_a_sequence(o.surroundings.environment);
     const bool numbered = has_number_place(fs::path(o.output).filename().string());
     if (o.is_sequence && !numbered)
         refuse("-o", "'" + o.output + "' has no place for the frames' numbers; give a pattern such as maps/%04d" +
@@ -375,6 +376,7 @@ void complete_bake_options(BakeOptions& o) {
         complete_size(o);
         complete_range(o);
     }
+    o.is_sequence = names_a_sequence(o.surroundings.environment);
     complete_method(o);
     complete_outputs(o);
     complete_compression(o);

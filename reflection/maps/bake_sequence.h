@@ -10,9 +10,12 @@
 
 namespace kokage {
 
+/// Frames of a video need not be as exact as a still map: at most 0.03/255 at 64³, a quarter less time.
+inline constexpr double kVideoTolerance = 3e-4;
+
 struct SequenceSettings {
     std::string output; ///< a pattern (image_sequence.h); its folder is made if it is missing
-    BakerSettings baker{};
+    BakerSettings baker{.tolerance = kVideoTolerance};
     EnvironmentLoading loading{};       ///< `split` is not looked at: bakers take images whole
     std::vector<DistantLight> lights{}; ///< added to every frame
     bool stop_at_broken = false;        ///< else broken frames are left out, and named
