@@ -154,9 +154,9 @@ void bake_one(const BakeOptions& options, const CommandContext& context) {
     record.work.stages.push_back({"writing", saving.cpu(), saving.wall()});
     finish_record(options, record, watch);
     context.progress->clear();
+    print_warnings(record.work.warnings);
     if (context.quiet)
         return;
-    print_warnings(record.work.warnings);
     std::printf("%s\n", environment.description.c_str());
     print_map(options);
     print_stages(record.work);
@@ -178,13 +178,16 @@ SequenceSettings sequence_settings(const BakeOptions& options) {
     return settings;
 }
 
-void print_sequence(const SequenceResult& result, const std::string& output) {
+void print_broken_frames(const SequenceResult& result) {
     for (const BrokenFrame& frame : result.first_broken)
         std::fprintf(stderr, "kokage: warning: frame %s is broken and left out: %s\n",
                      std::to_string(frame.number).c_str(), frame.why.c_str());
     if (result.broken > result.first_broken.size())
         std::fprintf(stderr, "kokage: warning: %s more broken frames are left out\n",
                      count_text(result.broken - result.first_broken.size()).c_str());
+}
+
+void print_sequence(const SequenceResult& result, const std::string& output) {
     std::printf("%s: %s baked", output.c_str(), counted(result.baked, "frame", "frames").c_str());
     const auto a_frame = [&](double seconds) { return duration_text(seconds / double(result.baked)); };
     if (result.baked > 0)
@@ -216,9 +219,10 @@ void bake_video(const BakeOptions& options, const CommandContext& context) {
         add_saved_by_range(record, 0); // frames are read and written while others are baked
     finish_record(options, record, watch);
     context.progress->clear();
+    print_warnings(record.work.warnings);
+    print_broken_frames(result);
     if (context.quiet)
         return;
-    print_warnings(record.work.warnings);
     print_map(options);
     print_stages(record.work);
     print_sequence(result, options.output);

@@ -119,7 +119,8 @@ int run_program(int argc, const char* const* argv) {
     bool quiet = false;
     int threads = 0;
     for (const Command& command : commands) {
-        command.app->add_flag("--quiet", quiet, "Print no progress and no summary")->group("General");
+        command.app->add_flag("--quiet", quiet, "Print no progress and no summary, only warnings and errors")
+            ->group("General");
         command.app->add_option("--threads", threads, "Threads to use; 0 = as many as the machine has")
             ->check(CLI::Range(0, 4096).description(""))
             ->type_name("N")

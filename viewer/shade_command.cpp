@@ -231,11 +231,11 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         write_json(options.report, shading_report(record));
 
     context.progress->clear();
-    if (context.quiet)
-        return;
     for (const std::vector<std::string>* warnings : {&shading.warnings, &shading.solution.report.warnings})
         for (const std::string& warning : *warnings)
             std::fprintf(stderr, "kokage: warning: %s\n", warning.c_str());
+    if (context.quiet)
+        return;
     print_summary(options, shading, clock);
     print_lods(lods);
 }

@@ -456,6 +456,10 @@ TEST(Bake, AVideoNamesItsBrokenFramesAndGoesOnWhereItStopped) {
     EXPECT_NE(run.errors.find("frame 3 is broken and left out"), std::string::npos) << run.errors;
     EXPECT_NE(run.output.find("3 frames baked"), std::string::npos) << run.output;
     EXPECT_TRUE(std::filesystem::exists(folder / "maps" / "04.exr"));
+    const ProgramRun quiet = run_kokage(
+        {"bake", "f%d.hdr", "--container", "cube", "--size", "16", "-o", "quiet/%02d.exr", "--quiet"}, folder.path());
+    EXPECT_EQ(quiet.output, "");
+    EXPECT_NE(quiet.errors.find("frame 3 is broken and left out"), std::string::npos) << quiet.errors;
     EXPECT_FALSE(std::filesystem::exists(folder / "maps" / "03.exr"));
     const Json report = Json::parse(read_text(folder / "r.json"));
     EXPECT_EQ(report["sequence"]["baked"], 3);
