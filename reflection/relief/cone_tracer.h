@@ -14,7 +14,9 @@ class ConeTracer : public ReliefTracer {
 
 /// The cones of cone_map.h, so that no ray passes a hit; where a ray dips below the top of the cell that it stands
 /// over, the exact root in that cell decides, so that hits are exact within single precision. At grazing angles cones
-/// are narrow where rays are flat: steps shrink to a cell each. A read is one cone (top and ratio), or one 2 x 2 cell.
+/// are narrow where rays are flat: steps shrink to a cell each. Rays that start within rounding of the surface (on a
+/// texel of a needle, a million tiles away) may hit it at t = 0, or a texel late: exact_tracer.h looks again at those,
+/// this peer does not. A read is one cone (top and ratio), or one 2 x 2 cell.
 /// Vector code of single precision; rays with numbers beyond it are traced cell by cell. `field` is kept by reference.
 /// Throws InputError for what linear_tracer.h's does.
 std::unique_ptr<ConeTracer> make_cone_tracer(const HeightField& field);
