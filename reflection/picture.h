@@ -5,6 +5,7 @@
 #include "common/scene/patch_scene.h"
 #include "common/services/progress.h"
 #include "common/trace/ray_queries.h"
+#include "reflection/gloss.h"
 
 #include <memory>
 #include <optional>
@@ -24,6 +25,7 @@ struct SurfaceLook {
     std::shared_ptr<const Image> base_color_texture; ///< linear RGB; null = none
     glm::vec3 mean_base_color{1.f}; ///< alpha-weighted mean of base_color x texture, as the solution used it
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
+    Gloss gloss;
     bool smooth_normals = false; ///< bark: light with the interpolated normal, and blend solved radiance across patches
 };
 

@@ -4,6 +4,7 @@
 #include "common/trace/ray_queries.h"
 #include "reflection/light_choice.h"
 #include "reflection/picture.h"
+#include "reflection/surface_points.h"
 
 #include <vector>
 
@@ -29,12 +30,13 @@ class SurfaceShading {
                        ShadingScratch& scratch) const;
 
   private:
-    glm::vec3 texture_factor(std::uint32_t triangle, const glm::vec3& weights) const;
+    glm::vec3 solved(const SurfacePoint& at) const;
     void smooth_solution();
 
     const ShadedScene& scene_;
     const RayQueries& queries_;
     const LightChoice& lights_;
+    const SurfacePoints points_;
     bool pixel_shadows_;
     /// Solved radiance at the corners of smooth surfaces (per position), the area mean of the patches that meet there.
     std::vector<glm::vec3> smooth_front_, smooth_back_;
