@@ -1,100 +1,35 @@
 #include "reflection/ground_shading.h"
-#include "common/services/random.h"
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace kokage {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 const glm::vec3 kUp(0, 1, 0);
-
-/// Value noise in -1 … 1 on the integer lattice, C1 between nodes.
-float lattice_noise(glm::vec2 place, std::uint64_t octave) {
-    const glm::vec2 cell = glm::floor(place), t = place - cell;
-    const glm::vec2 s = t * t * (3.f - 2.f * t);
-    auto node = [&](float dx, float dy) {
-        const auto x = std::uint64_t(std::int64_t(cell.x + dx)), y = std::uint64_t(std::int64_t(cell.y + dy));
-        return float(hash64(hash64(hash64(octave) ^ x) ^ y) >> 40) * 0x1p-23f - 1.f;
-    };
-    return (1 - s.y) * ((1 - s.x) * node(0, 0) + s.x * node(1, 0)) + s.y * ((1 - s.x) * node(0, 1) + s.x * node(1, 1));
-}
 
 } // namespace
 
-glm::vec3 ground_variation(glm::vec2 place, float size, float finest, float spread) {
-    constexpr std::uint64_t kOctaves = 14, kTintOctaves = 4, kTintPattern = 100;
-    float brightness = 0, tint = 0, amplitude = 0.36f;
-    glm::vec2 at = place / size;
-    float wavelength = size;
-    for (std::uint64_t octave = 0; octave < kOctaves; ++octave) {
-        if (!(std::abs(at.x) < 1e9f && std::abs(at.y) < 1e9f) || wavelength < finest)
-            break; // beyond the lattice's exact integers, or finer than a pixel sees: an octave fades out before it is
-                   // dropped
-        const float fade = std::min(1.f, wavelength / finest - 1);
-        brightness += fade * amplitude * lattice_noise(at, octave);
-        if (octave < kTintOctaves)
-            tint += fade * 0.3f * lattice_noise(at, octave + kTintPattern);
-        amplitude *= 0.9f;
-        // Each octave is turned, so that the lattices don't line up.
-        at = 2.f * glm::vec2(0.8f * at.x - 0.6f * at.y, 0.6f * at.x + 0.8f * at.y) + 17.f;
-        wavelength *= 0.5f;
-    }
-    // Two thirds of the range for brightness, one third for the tint.
-    brightness = std::clamp(brightness, -1.f, 1.f) * 2 / 3;
-    tint = std::clamp(tint, -1.f, 1.f) / 3;
-    return 1.f + spread * (brightness + tint * glm::vec3(0.8f, -0.2f, 0.1f));
-}
-
 GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                             const Backdrop& backdrop, const LightChoice& lights, const Camera& camera,
-                             const PictureOptions& options, Progress& progress)
-    : queries_(queries), backdrop_(backdrop), lights_(lights) {
-    const Bounds bounds = bounds_of(*scene.patches);
-    if (scene.patches->ground) {
-        height_ = scene.patches->ground->height_m;
-        albedo_ = scene.patches->ground->albedo;
-    } else if (options.ground == PictureGround::automatic) {
-        if (environment.has_lower_half && scene.patches->triangles.empty())
-            return; // nothing that could cast a shadow
-        height_ = scene.foot_height.value_or(bounds.low.y);
-        if (!environment.has_lower_half)
-            albedo_ = glm::vec3(0.2f);
-    } else {
+                             const Backdrop& backdrop, const GroundLook& look, const LightChoice& lights,
+                             Progress& progress)
+    : queries_(queries), backdrop_(backdrop), look_(look), lights_(lights) {
+    if (!look.height())
         return;
-    }
-    const glm::vec3 half = 0.5f * (bounds.high - bounds.low);
-    centre_ = {bounds.centre().x, bounds.centre().z};
-    pixel_angle_ = 2 * std::tan(0.5f * camera.vertical_field_of_view) / float(options.height);
-    scene_radius_ = std::max({half.x, half.y, half.z});
-    haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - *height_));
-    if (!(haze_distance_ > 0))
-        haze_distance_ = 1;
-    if (albedo_)
-        measure_haze();
-    light_.emplace(scene, queries, backdrop, *height_, progress);
+    light_.emplace(scene, queries, backdrop, *look.height(), progress);
     backdrop_irradiance_ = light_->open_irradiance();
     for (const DistantLight& light : environment.distant_lights)
         for (const DistantLight::Texel& texel : light.texels)
             backdrop_irradiance_ += texel.irradiance * std::max(0.f, texel.direction.y);
 }
 
-float GroundShading::distance(const glm::vec3& origin, const glm::vec3& direction) const {
-    if (!height_)
-        return kInfinity;
-    const float t = (*height_ - origin.y) / direction.y;
-    return t > 0 && std::isfinite(t) ? t : kInfinity;
-}
-
 glm::vec3 GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
                                   SampleIndex sample, ShadingScratch& scratch) const {
     if (direction.y >= 0)
         return glm::vec3(0.f);
-    const glm::vec3 point(origin.x + distance * direction.x, *height_, origin.z + distance * direction.z);
-    return albedo_ ? diffuse_plane(point, direction, distance, sample, scratch)
-                   : shadowed_backdrop(point, direction, sample, scratch);
+    const glm::vec3 point = look_.point(origin, direction, distance);
+    return look_.mean_albedo() ? diffuse_plane(point, direction, distance, sample, scratch)
+                               : shadowed_backdrop(point, direction, sample, scratch);
 }
 
 glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
@@ -107,45 +42,11 @@ glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albed
 glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,
                                        SampleIndex sample, ShadingScratch& scratch) const {
     // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
-    const float clear = std::exp(-distance / haze_distance_);
+    const float clear = look_.clear(distance);
     glm::vec3 radiance(0.f);
-    if (clear > 1e-4f) {
-        // Soil varies; the variation shrinks to nothing as the albedo nears 1, where it could only lose energy.
-        const float spread = 0.4f * std::clamp(1 - std::max({albedo_->r, albedo_->g, albedo_->b}), 0.f, 1.f);
-        // A pixel's footprint is longer along the view than across: the mean of both.
-        const float footprint = 1.3f * pixel_angle_ * distance / std::sqrt(std::max(-direction.y, 1e-3f));
-        const glm::vec3 variation =
-            ground_variation(glm::vec2(point.x, point.z) - centre_, 0.5f * haze_distance_ / 30, footprint, spread);
-        radiance = clear * light_at(point, *albedo_ * variation, sample, scratch);
-    }
-    return radiance + (1 - clear) * haze(direction);
-}
-
-/// Air mixes the light of a wide part of the horizon: the mean over azimuth, weighted by the squared cosine of how far
-/// it lies to the side. (One direction's alone would draw every tree and house of the horizon down into the ground.)
-void GroundShading::measure_haze() {
-    constexpr int kAzimuths = 128;
-    const auto turn = [](int i) { return 2 * kPi * float(i) / kAzimuths; };
-    std::vector<glm::vec3> horizon;
-    for (int i = 0; i < kAzimuths; ++i)
-        horizon.push_back(backdrop_.remainder(glm::normalize(glm::vec3(std::cos(turn(i)), 0.01f, std::sin(turn(i))))));
-    haze_.assign(kAzimuths, glm::vec3(0.f));
-    for (int i = 0; i < kAzimuths; ++i) {
-        float weights = 0;
-        for (int k = -kAzimuths / 4; k <= kAzimuths / 4; ++k) {
-            const float weight = std::cos(turn(k)) * std::cos(turn(k));
-            haze_[std::size_t(i)] += weight * horizon[std::size_t((i + k + kAzimuths) % kAzimuths)];
-            weights += weight;
-        }
-        haze_[std::size_t(i)] /= weights;
-    }
-}
-
-glm::vec3 GroundShading::haze(const glm::vec3& direction) const {
-    const float count = float(haze_.size());
-    const float place = (std::atan2(direction.z, direction.x) / (2 * kPi) + 1) * count, floor = std::floor(place);
-    const auto at = [&](float i) { return haze_[std::size_t(i) % haze_.size()]; };
-    return glm::mix(at(floor), at(floor + 1), place - floor);
+    if (clear > 1e-4f)
+        radiance = clear * light_at(point, look_.albedo(point, direction, distance), sample, scratch);
+    return radiance + (1 - clear) * look_.haze(direction);
 }
 
 glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
@@ -155,8 +56,7 @@ glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::ve
     // light on it must change: times (light with the scene) / (light without it). Far from the scene that tends to 1
     // and is made 1, because there the photograph shows things that stand, not ground.
     const glm::vec3 seen = backdrop_.seen(direction);
-    const float away = glm::length(glm::vec2(point.x, point.z) - centre_) / std::max(scene_radius_, 1e-30f);
-    const float near = std::clamp((12 - away) / 8, 0.f, 1.f);
+    const float near = std::clamp((12 - look_.away(point)) / 8, 0.f, 1.f);
     if (near <= 0)
         return seen;
     const glm::vec3 now = kPi * light_at(point, glm::vec3(1.f), sample, scratch);

@@ -1,13 +1,13 @@
 // Reading and writing species files.
 #include "common/services/error.h"
+#include "common/services/json_reader.h"
 #include "common/services/named_file.h"
-#include "trees/growth/nearest_word.h"
+#include "common/services/nearest_word.h"
 #include "trees/species.h"
 
 #include <algorithm>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
 
 namespace kokage {
 namespace fs = std::filesystem;
@@ -18,20 +18,10 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t largest_file = 1 << 20, longest_line = 2000, longest_name = 80;
 constexpr const char* how_to_start = "; 'kokage grow --describe oak -o new.json' writes a file that reads";
 
-/// nlohmann says where as "parse error at line 3, column 5: ...", with more before and after.
-std::string syntax_complaint(const std::string& what) {
-    const std::size_t at = what.find("line "), colon = what.find(": ", at == std::string::npos ? 0 : at);
-    if (at == std::string::npos || colon == std::string::npos)
-        return "not JSON";
-    std::string rest = what.substr(colon + 2);
-    rest.erase(std::remove_if(rest.begin(), rest.end(), [](unsigned char c) { return c < 32; }), rest.end());
-    return what.substr(at, colon - at) + ": not JSON (" + rest.substr(0, 160) + ")";
-}
-
 class SpeciesReader {
   public:
-    SpeciesReader(std::string_view text, const std::string& file) : file_(file) {
-        parse(text);
+    SpeciesReader(std::string_view text, const std::string& file)
+        : file_(file), json_(parse_json(text, file, how_to_start)) {
         const std::vector<std::string> known = {"name", "latin_name", "summary", "sources", "parameters"};
         if (!json_.is_object())
             fail("it holds no { } with a species", how_to_start);
@@ -55,27 +45,6 @@ class SpeciesReader {
         for (char& c : message) // keys may hold line ends
             c = static_cast<unsigned char>(c) < 32 ? ' ' : c;
         throw InputError(message);
-    }
-
-    /// With comments; a key that stands twice is refused, because one of both would be lost.
-    void parse(std::string_view text) {
-        std::vector<std::set<std::string>> keys;
-        const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
-            if (event == Json::parse_event_t::object_start)
-                keys.emplace_back();
-            else if (event == Json::parse_event_t::object_end)
-                keys.pop_back();
-            else if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-                fail("'" + parsed.get<std::string>() + "' stands there twice; take one away");
-            return true;
-        };
-        try {
-            json_ = Json::parse(text, watch, true, true);
-        } catch (const Json::parse_error& error) {
-            fail(syntax_complaint(error.what()), how_to_start);
-        } catch (const Json::out_of_range&) {
-            fail("a number is too large to be one", how_to_start);
-        }
     }
 
     /// A line of text; empty if it is not given.

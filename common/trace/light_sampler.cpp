@@ -67,7 +67,7 @@ std::optional<LightRay> LightSampler::only_light(const glm::vec3& normal, const 
     if (!(bound(distant_[0], normal, front, back) > 0))
         return std::nullopt;
     const LightSample drawn = sample_distant(distant_[0], numbers);
-    return LightRay{drawn.direction, INFINITY, drawn.irradiance_over_pdf};
+    return LightRay{drawn.direction, INFINITY, drawn.irradiance_over_pdf, distant_[0].light};
 }
 
 std::optional<LightRay> LightSampler::sample(const glm::vec3& point, const glm::vec3& normal, const glm::vec3& front,
@@ -98,13 +98,14 @@ std::optional<LightRay> LightSampler::sample(const glm::vec3& point, const glm::
         return std::nullopt;
     if (index < distant_.size()) {
         const LightSample drawn = sample_distant(distant_[index], numbers);
-        return LightRay{drawn.direction, INFINITY, drawn.irradiance_over_pdf / float(probability)};
+        return LightRay{drawn.direction, INFINITY, drawn.irradiance_over_pdf / float(probability),
+                        distant_[index].light};
     }
     const Point& light = points_[index - distant_.size()];
     const glm::dvec3 way(light.position - point);
     const double distance = glm::length(way);
     return LightRay{glm::vec3(way / distance), float(distance),
-                    glm::vec3(light.intensity / (distance * distance * probability))};
+                    glm::vec3(light.intensity / (distance * distance * probability)), nullptr};
 }
 
 } // namespace kokage

@@ -10,8 +10,9 @@ namespace kokage {
 /// Where a shadow ray goes and what it brings.
 struct LightRay {
     glm::vec3 direction;
-    float distance;       ///< INFINITY for lights at infinity
-    glm::vec3 irradiance; ///< on a facing surface, unshadowed, over the probability of the choice
+    float distance;                        ///< INFINITY for lights at infinity
+    glm::vec3 irradiance;                  ///< on a facing surface, unshadowed, over the probability of the choice
+    const DistantLight* distant = nullptr; ///< that was chosen; null for a point light
 };
 
 /// Chooses in proportion to a bound of what each light brings, so that 64 lights cost one shadow ray a vertex and

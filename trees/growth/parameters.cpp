@@ -1,7 +1,7 @@
 #include "trees/growth/parameters.h"
 
 #include "common/services/error.h"
-#include "trees/growth/nearest_word.h"
+#include "common/services/nearest_word.h"
 #include "trees/growth/parameter_table.h"
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 #include "picture_scenes.h"
-#include "reflection/ground_shading.h"
+#include "reflection/ground_look.h"
 #include "reflection/ground_sky_light.h"
 #include "reflection/sampling.h"
 

@@ -1,4 +1,4 @@
-#include "trees/growth/nearest_word.h"
+#include "common/services/nearest_word.h"
 
 #include <algorithm>
 #include <numeric>

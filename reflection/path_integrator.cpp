@@ -1,0 +1,185 @@
+#include "reflection/path_integrator.h"
+#include "common/directions/lobes.h"
+#include "reflection/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+/// As the path tracer of common/trace, which measured them.
+constexpr double kLowContrast = 2.5;
+constexpr float kSurvival = 1.5f;
+
+float sum(const glm::vec3& rgb) {
+    return rgb.r + rgb.g + rgb.b;
+}
+
+float largest(const glm::vec3& rgb) {
+    return std::max({rgb.r, rgb.g, rgb.b});
+}
+
+/// `local` is about +Y.
+glm::vec3 turned(const glm::vec3& local, const glm::vec3& axis) {
+    const glm::vec3 helper = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    const glm::vec3 tangent = glm::normalize(glm::cross(helper, axis)), bitangent = glm::cross(axis, tangent);
+    return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
+}
+
+/// A light covers more of the sphere than the lobe's bulk.
+bool is_wide_for(const DistantLight& light, float roughness) {
+    const float light_share = 1 - std::cos(std::min(light.half_angle, kPi));
+    return light_share > float(1 / (1 + ggx_falloff(roughness)));
+}
+
+glm::vec3 lobe_of(const PathVertex& vertex, const glm::vec3& direction) {
+    if (glm::dot(vertex.normal, direction) <= 0)
+        return glm::vec3(0.f);
+    const glm::dvec3 apart = glm::dvec3(vertex.mirrored) - glm::dvec3(direction);
+    return vertex.gloss * float(ggx_lobe_value(vertex.roughness, glm::dot(apart, apart)));
+}
+
+} // namespace
+
+PathIntegrator::PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment)
+    : queries_(queries), patches_(*scene.patches), environment_(environment), points_(scene),
+      remainder_(environment.remainder), lights_(environment), offset_(queries.ray_offset()) {
+    if (remainder_.contrast() > kLowContrast)
+        remainder_share_ = 0.5f * (1 - std::sqrt(float(kLowContrast / remainder_.contrast())));
+}
+
+PathVertex PathIntegrator::surface_vertex(const glm::vec3& origin, const glm::vec3& direction,
+                                          const RayHit& hit) const {
+    const SurfacePoint at = points_.at(origin, direction, hit);
+    return {at.point,
+            at.geometric_normal,
+            at.normal,
+            at.optics,
+            at.gloss,
+            at.roughness,
+            glm::normalize(glm::reflect(direction, at.normal))};
+}
+
+PathVertex PathIntegrator::ground_vertex(const glm::vec3& point, const glm::vec3& albedo) {
+    PathVertex vertex;
+    vertex.point = point;
+    vertex.optics = {albedo, glm::vec3(0.f)};
+    return vertex;
+}
+
+/// Rays leave on the side of the shading normal to which they go, so that no facet of a rounded surface hides them.
+glm::vec3 PathIntegrator::start(const PathVertex& vertex, const glm::vec3& direction) const {
+    return vertex.point + (glm::dot(vertex.normal, direction) > 0 ? offset_ : -offset_) * vertex.geometric_normal;
+}
+
+glm::vec3 PathIntegrator::light(const PathVertex& vertex, PathNumbers& numbers) const {
+    if (lights_.empty())
+        return glm::vec3(0.f);
+    const float choice = numbers.single();
+    const glm::vec2 place = numbers.pair();
+    const auto ray = lights_.sample(vertex.point, vertex.normal, vertex.optics.reflectance + vertex.gloss,
+                                    vertex.optics.transmittance, choice, place);
+    if (!ray)
+        return glm::vec3(0.f);
+    const float cosine = glm::dot(vertex.normal, ray->direction);
+    glm::vec3 weight = (cosine > 0 ? vertex.optics.reflectance * cosine : vertex.optics.transmittance * -cosine) / kPi;
+    if (largest(vertex.gloss) > 0 && !(ray->distant && is_wide_for(*ray->distant, vertex.roughness)))
+        weight += lobe_of(vertex, ray->direction);
+    if (!(largest(weight) > 0) || queries_.occluded(start(vertex, ray->direction), ray->direction, 0, ray->distance))
+        return glm::vec3(0.f);
+    return weight * ray->irradiance;
+}
+
+/// Radiance of the lights that lobes of this roughness find for themselves.
+glm::vec3 PathIntegrator::wide_lights_in(const glm::vec3& direction, float roughness) const {
+    const auto within = [&](const glm::vec3& towards, float half_angle) {
+        return half_angle > 0 && glm::dot(direction, towards) >= std::cos(half_angle);
+    };
+    // A uniform cone of radiance L gives L π sin²(half angle) on a facing surface.
+    const auto cone = [](float half_angle) { return kPi * std::sin(half_angle) * std::sin(half_angle); };
+    glm::vec3 seen(0.f);
+    for (const DistantLight& light : environment_.distant_lights) {
+        if (!is_wide_for(light, roughness) || !within(light.direction, light.half_angle))
+            continue;
+        if (light.texels.empty())
+            seen += light.irradiance / cone(light.half_angle);
+        for (const DistantLight::Texel& texel : light.texels)
+            if (within(texel.direction, texel.half_angle))
+                seen += texel.irradiance / cone(texel.half_angle);
+    }
+    return seen;
+}
+
+/// One-sample multiple importance sampling (Veach 1997, 9.2.4) between the cosine lobes and the remainder's bright
+/// parts.
+PathIntegrator::Step PathIntegrator::scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const {
+    const float reflected = sum(vertex.optics.reflectance), transmitted = sum(vertex.optics.transmittance);
+    Step step;
+    if (!(reflected + transmitted > 0))
+        return step;
+    const float share = reflected / (reflected + transmitted);
+    if (choice < remainder_share_) {
+        step.direction = remainder_.sample(place, choice / remainder_share_).direction;
+    } else {
+        const bool back = (choice - remainder_share_) / (1 - remainder_share_) >= share;
+        step.direction = turned(cosine_direction(place), back ? -vertex.normal : vertex.normal);
+    }
+    const float cosine = glm::dot(vertex.normal, step.direction);
+    const float lobe = (cosine > 0 ? share : 1 - share) * std::abs(cosine) / kPi;
+    const float density = remainder_share_ * (remainder_share_ > 0 ? remainder_.density(step.direction) : 0.f) +
+                          (1 - remainder_share_) * lobe;
+    if (density > 0)
+        step.weight = (cosine > 0 ? vertex.optics.reflectance : vertex.optics.transmittance) *
+                      (std::abs(cosine) / (kPi * density));
+    return step;
+}
+
+PathIntegrator::Step PathIntegrator::scatter(const PathVertex& vertex, PathNumbers& numbers) const {
+    const float diffuse = sum(vertex.optics.reflectance) + sum(vertex.optics.transmittance), gloss = sum(vertex.gloss);
+    const float choice = numbers.single();
+    const glm::vec2 place = numbers.pair();
+    if (!(diffuse + gloss > 0))
+        return {};
+    const float glossy_share = gloss / (diffuse + gloss);
+    Step step;
+    if (choice < glossy_share) {
+        const LobeSample drawn = sample_gloss(vertex.mirrored, vertex.roughness, place);
+        const bool above = glm::dot(vertex.normal, drawn.direction) > 0;
+        step = {drawn.direction, above ? vertex.gloss * (drawn.weight / glossy_share) : glm::vec3(0.f), true};
+    } else {
+        step = scatter_diffuse(vertex, (choice - glossy_share) / (1 - glossy_share), place);
+        step.weight /= 1 - glossy_share;
+    }
+    return step;
+}
+
+glm::vec3 PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) const {
+    glm::vec3 total(0.f), throughput(1.f);
+    for (;;) {
+        total += throughput * light(vertex, numbers);
+        const Step step = scatter(vertex, numbers);
+        throughput *= step.weight;
+        const float survival = std::min(0.99f, kSurvival * largest(throughput));
+        if (!(numbers.independent() < survival))
+            break;
+        throughput /= survival;
+        const glm::vec3 origin = start(vertex, step.direction);
+        RayHit hit;
+        if (!queries_.first_hit(origin, step.direction, 0, INFINITY, hit)) {
+            total += throughput * remainder_.radiance(step.direction);
+            if (step.glossy)
+                total += throughput * wide_lights_in(step.direction, vertex.roughness);
+            break;
+        }
+        if (hit.ground && step.direction.y >= 0) // its underside
+            break;
+        vertex = hit.ground ? ground_vertex(origin + hit.distance * step.direction, patches_.ground->albedo)
+                            : surface_vertex(origin, step.direction, hit);
+        if (hit.ground)
+            vertex.point.y = patches_.ground->height_m;
+    }
+    return total;
+}
+
+} // namespace kokage

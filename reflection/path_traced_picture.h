@@ -1,0 +1,18 @@
+#pragma once
+// The truth of a picture: camera rays, textures, smooth normals and gloss of render_picture, with every light path
+// between them traced.
+#include "reflection/picture.h"
+
+namespace kokage {
+
+/// What render_picture draws, by path tracing: all bounces between patches and ground (Russian roulette alone ends
+/// them), lights and the remainder sampled, gloss (gloss.h) sampled by its lobe at every vertex. Solved radiance in
+/// `scene` is not read. The ground is the scene's own, or a plane as PictureGround says; a backdrop that plays the
+/// ground has no truth, so PictureGround::automatic in an environment with a lower half draws no ground unless the
+/// scene has one. `options.samples` paths a pixel; light_samples and pixel_shadows are not used. `subject` as
+/// render_picture; the same bits for any number of threads. Throws InputError, Stopped.
+Image render_path_traced(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                         const Camera& camera, const PictureOptions& options, Progress& progress,
+                         Image* subject = nullptr);
+
+} // namespace kokage
