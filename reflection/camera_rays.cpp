@@ -58,7 +58,8 @@ glm::vec3 PixelRays::direction(std::uint32_t sample) const {
 glm::dvec3 displayable(const glm::vec3& radiance) {
     glm::dvec3 result(0.);
     for (std::size_t c = 0; c < 3; ++c)
-        result[c] = double(radiance[c]) < kLargestRadiance ? std::max(double(radiance[c]), 0.0) : kLargestRadiance;
+        result[c] = std::isnan(radiance[c]) ? kLargestRadiance
+                                            : std::clamp(double(radiance[c]), -kLargestRadiance, kLargestRadiance);
     return result;
 }
 

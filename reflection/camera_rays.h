@@ -37,7 +37,8 @@ class PixelRays {
     std::uint32_t samples_, film_pattern_, light_pattern_;
 };
 
-/// What overflowed on the way is as bright as a picture can hold; nothing is negative or NaN.
+/// What overflowed on the way is as bright as a picture can hold; never NaN. (A single ray's share of a pixel may be
+/// negative, gloss_shading.h.)
 glm::dvec3 displayable(const glm::vec3& radiance);
 
 } // namespace kokage

@@ -36,7 +36,7 @@ glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albed
                                   ShadingScratch& scratch) const {
     const Scattering scattering{kUp, albedo, glm::vec3(0.f)};
     return albedo / kPi * light_->irradiance(point.x, point.z) +
-           light_from_lights(lights_, queries_, point, scattering, sample, scratch);
+           light_from_lights(lights_, queries_, point, scattering, sample, scratch).scattered;
 }
 
 glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,

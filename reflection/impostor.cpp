@@ -226,7 +226,8 @@ CapturedView capture_view(const ShadedScene& scene, const RayQueries& queries, c
                                            hit) ||
                         hit.ground)
                         continue;
-                    color += glm::dvec3(surfaces.radiance(origin, -frame.towards_viewer, hit, {}, scratch));
+                    const SurfacePoint at = surfaces.point(origin, -frame.towards_viewer, hit);
+                    color += glm::dvec3(surfaces.radiance(at, -frame.towards_viewer, {}, scratch).total());
                     normal += glm::dvec3(seen_normal(scene, hit, -frame.towards_viewer));
                     ++hits;
                 }

@@ -1,4 +1,6 @@
 #include "reflection/light_choice.h"
+#include "common/directions/lobes.h"
+#include "reflection/glossy_light.h"
 #include "reflection/sampling.h"
 
 #include <algorithm>
@@ -34,6 +36,13 @@ float largest(const glm::vec3& rgb) {
 }
 
 } // namespace
+
+glm::vec3 Scattering::mirrored_towards(const glm::vec3& direction_to_light) const {
+    if (!is_glossy() || glm::dot(normal, direction_to_light) <= 0)
+        return glm::vec3(0.f);
+    const glm::dvec3 apart = glm::dvec3(mirrored) - glm::dvec3(direction_to_light);
+    return gloss * float(ggx_lobe_value(roughness, glm::dot(apart, apart)));
+}
 
 LightChoice::LightChoice(const Environment& environment, int light_samples)
     : points_(environment.point_lights), light_samples_(std::uint32_t(std::max(1, light_samples))) {
@@ -72,13 +81,16 @@ float LightChoice::contribution(std::size_t light, const glm::vec3& point, const
     if (light < distant_.size()) {
         const Distant& distant = distant_[light];
         // A wide light can reach over the horizon of its mean direction: its probability must not be 0 there.
-        const glm::vec3 spill = distant.sine_of_half_angle * (scattering.reflectance + scattering.transmittance) / kPi;
-        return largest(distant.light.irradiance * (scattering.towards(distant.light.direction) + spill));
+        const glm::vec3 spill =
+            distant.sine_of_half_angle * (scattering.reflectance + scattering.transmittance + scattering.gloss) / kPi;
+        return largest(distant.light.irradiance * (scattering.towards(distant.light.direction) +
+                                                   scattering.mirrored_towards(distant.light.direction) + spill));
     }
     const PointLight& lamp = points_[light - distant_.size()];
     const glm::vec3 offset = lamp.position - point;
     const float squared = std::max(glm::dot(offset, offset), kLeastSquaredDistance);
-    return largest(lamp.intensity / squared * scattering.towards(offset / std::sqrt(squared)));
+    const glm::vec3 direction = offset / std::sqrt(squared);
+    return largest(lamp.intensity / squared * (scattering.towards(direction) + scattering.mirrored_towards(direction)));
 }
 
 void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight,
@@ -88,13 +100,17 @@ void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scatt
         const LightSample sample = draw(distant_[light], u);
         ray = {sample.direction, std::numeric_limits<float>::infinity(),
                weight * sample.irradiance_over_pdf * scattering.towards(sample.direction)};
+        if (scattering.is_glossy() && !is_wide_for(distant_[light].light, scattering.roughness))
+            ray.reflection = weight * sample.irradiance_over_pdf * scattering.mirrored_towards(sample.direction);
     } else {
         const PointLight& lamp = points_[light - distant_.size()];
         const glm::vec3 offset = lamp.position - point;
         const float squared = std::max(glm::dot(offset, offset), kLeastSquaredDistance), distance = std::sqrt(squared);
-        ray = {offset / distance, distance, weight * lamp.intensity / squared * scattering.towards(offset / distance)};
+        const glm::vec3 arrives = weight * lamp.intensity / squared;
+        ray = {offset / distance, distance, arrives * scattering.towards(offset / distance),
+               arrives * scattering.mirrored_towards(offset / distance)};
     }
-    if (largest(ray.radiance) > 0)
+    if (largest(ray.radiance) > 0 || largest(ray.reflection) > 0)
         rays.push_back(ray);
 }
 
@@ -102,7 +118,7 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
                           std::vector<ShadowRay>& rays, std::vector<float>& scratch) const {
     rays.clear();
     const std::size_t light_count = distant_.size() + points_.size();
-    if (light_count == 0 || largest(scattering.reflectance + scattering.transmittance) <= 0)
+    if (light_count == 0 || largest(scattering.reflectance + scattering.transmittance + scattering.gloss) <= 0)
         return;
     if (light_count <= kFewLights) {
         for (std::size_t light = 0; light < light_count; ++light) {

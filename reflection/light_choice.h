@@ -14,11 +14,17 @@ namespace kokage {
 struct Scattering {
     glm::vec3 normal; ///< unit, on the viewed side
     glm::vec3 reflectance, transmittance;
+    /// Gloss (gloss.h), K towards the viewer; 0: matt.
+    glm::vec3 gloss{0.f}, mirrored{0.f};
+    float roughness = 1;
 
     glm::vec3 towards(const glm::vec3& direction_to_light) const {
         const float cosine = glm::dot(normal, direction_to_light);
         return (cosine > 0 ? reflectance * cosine : transmittance * -cosine) / kPi;
     }
+    bool is_glossy() const { return gloss.r > 0 || gloss.g > 0 || gloss.b > 0; }
+    /// The same of the gloss: K times the lobe's value, above the horizon.
+    glm::vec3 mirrored_towards(const glm::vec3& direction_to_light) const;
 };
 
 /// One shadow ray to trace, and what arrives if it is free.
@@ -26,6 +32,7 @@ struct ShadowRay {
     glm::vec3 direction;
     float distance;     ///< infinite for distant lights
     glm::vec3 radiance; ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
+    glm::vec3 reflection{0.f}; ///< the same of the gloss; 0 for lights that are wide for its lobe (glossy_light.h)
 };
 
 /// Where in a pixel's set of samples we are, for stratification across the set.

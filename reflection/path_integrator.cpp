@@ -1,5 +1,6 @@
 #include "reflection/path_integrator.h"
 #include "common/directions/lobes.h"
+#include "reflection/glossy_light.h"
 #include "reflection/sampling.h"
 
 #include <algorithm>
@@ -25,12 +26,6 @@ glm::vec3 turned(const glm::vec3& local, const glm::vec3& axis) {
     const glm::vec3 helper = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
     const glm::vec3 tangent = glm::normalize(glm::cross(helper, axis)), bitangent = glm::cross(axis, tangent);
     return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
-}
-
-/// A light covers more of the sphere than the lobe's bulk.
-bool is_wide_for(const DistantLight& light, float roughness) {
-    const float light_share = 1 - std::cos(std::min(light.half_angle, kPi));
-    return light_share > float(1 / (1 + ggx_falloff(roughness)));
 }
 
 glm::vec3 lobe_of(const PathVertex& vertex, const glm::vec3& direction) {
@@ -91,26 +86,6 @@ glm::vec3 PathIntegrator::light(const PathVertex& vertex, PathNumbers& numbers) 
     return weight * ray->irradiance;
 }
 
-/// Radiance of the lights that lobes of this roughness find for themselves.
-glm::vec3 PathIntegrator::wide_lights_in(const glm::vec3& direction, float roughness) const {
-    const auto within = [&](const glm::vec3& towards, float half_angle) {
-        return half_angle > 0 && glm::dot(direction, towards) >= std::cos(half_angle);
-    };
-    // A uniform cone of radiance L gives L π sin²(half angle) on a facing surface.
-    const auto cone = [](float half_angle) { return kPi * std::sin(half_angle) * std::sin(half_angle); };
-    glm::vec3 seen(0.f);
-    for (const DistantLight& light : environment_.distant_lights) {
-        if (!is_wide_for(light, roughness) || !within(light.direction, light.half_angle))
-            continue;
-        if (light.texels.empty())
-            seen += light.irradiance / cone(light.half_angle);
-        for (const DistantLight::Texel& texel : light.texels)
-            if (within(texel.direction, texel.half_angle))
-                seen += texel.irradiance / cone(texel.half_angle);
-    }
-    return seen;
-}
-
 /// One-sample multiple importance sampling (Veach 1997, 9.2.4) between the cosine lobes and the remainder's bright
 /// parts.
 PathIntegrator::Step PathIntegrator::scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const {
@@ -169,7 +144,7 @@ glm::vec3 PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) cons
         if (!queries_.first_hit(origin, step.direction, 0, INFINITY, hit)) {
             total += throughput * remainder_.radiance(step.direction);
             if (step.glossy)
-                total += throughput * wide_lights_in(step.direction, vertex.roughness);
+                total += throughput * wide_lights_in(environment_, step.direction, vertex.roughness);
             break;
         }
         if (hit.ground && step.direction.y >= 0) // its underside

@@ -37,7 +37,6 @@ class PathIntegrator {
         bool glossy = false;
     };
     glm::vec3 light(const PathVertex& vertex, PathNumbers& numbers) const;
-    glm::vec3 wide_lights_in(const glm::vec3& direction, float roughness) const;
     Step scatter(const PathVertex& vertex, PathNumbers& numbers) const;
     Step scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const;
     glm::vec3 start(const PathVertex& vertex, const glm::vec3& direction) const;

@@ -2,10 +2,11 @@
 #include "common/services/parallel.h"
 #include "reflection/backdrop.h"
 #include "reflection/camera_rays.h"
-#include "reflection/ground_shading.h"
+#include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
 #include "reflection/surface_shading.h"
 
+#include <algorithm>
 #include <limits>
 
 namespace kokage {
@@ -20,6 +21,7 @@ struct Renderer {
     const SurfaceShading& surfaces;
     const GroundLook& ground;
     const GroundShading& ground_light;
+    const GlossShading& gloss;
 
     /// `met` counts rays that met a surface.
     glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample, ShadingScratch& scratch,
@@ -29,7 +31,9 @@ struct Renderer {
         const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
         if (found && hit.distance <= ground_distance) {
             ++met;
-            return surfaces.radiance(origin, direction, hit, sample, scratch);
+            const SurfacePoint at = surfaces.point(origin, direction, hit);
+            return surfaces.radiance(at, direction, sample, scratch).total() +
+                   gloss.radiance(at, direction, sample, scratch);
         }
         if (ground_distance < kInfinity)
             return ground_light.radiance(origin, direction, ground_distance, sample, scratch);
@@ -52,7 +56,9 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
     const SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
     const GroundLook ground(scene, environment, backdrop, camera, options);
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    const Renderer renderer{queries, backdrop, surfaces, ground, ground_light};
+    WorkReport report;
+    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, report);
+    const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss};
 
     Image picture(options.width, options.height, 3);
     if (subject)
@@ -71,7 +77,7 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
                     sum +=
                         displayable(renderer.radiance(frame.position, rays.direction(s), rays.index(s), scratch, met));
                 for (int c = 0; c < 3; ++c)
-                    picture.at(x, y)[c] = float(sum[std::size_t(c)] / samples);
+                    picture.at(x, y)[c] = float(std::max(sum[std::size_t(c)], 0.) / samples);
                 if (subject)
                     subject->at(x, y)[0] = float(met) / float(samples);
             }

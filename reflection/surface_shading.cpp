@@ -26,14 +26,16 @@ struct PositionHash {
 
 } // namespace
 
-glm::vec3 light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
-                            const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch) {
+LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
+                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch) {
     lights.rays_at(point, scattering, sample, scratch.rays, scratch.weights);
     const float near = queries.ray_offset();
-    glm::vec3 sum(0.f);
+    LightFromLights sum;
     for (const ShadowRay& ray : scratch.rays)
-        if (!queries.occluded(point, ray.direction, near, ray.distance))
-            sum += ray.radiance;
+        if (!queries.occluded(point, ray.direction, near, ray.distance)) {
+            sum.scattered += ray.radiance;
+            sum.reflected += ray.reflection;
+        }
     return sum;
 }
 
@@ -96,14 +98,23 @@ glm::vec3 SurfaceShading::solved(const SurfacePoint& at) const {
     return at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch];
 }
 
-glm::vec3 SurfaceShading::radiance(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit,
-                                   SampleIndex sample, ShadingScratch& scratch) const {
-    const SurfacePoint at = points_.at(origin, direction, hit);
-    const glm::vec3 indirect = at.texture * solved(at);
+glm::vec3 SurfaceShading::solved_radiance(const SurfacePoint& at) const {
+    return at.texture * (at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch]);
+}
+
+SurfaceRadiance SurfaceShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                         ShadingScratch& scratch) const {
+    SurfaceRadiance result;
+    result.indirect = at.texture * solved(at);
     if (!pixel_shadows_)
-        return indirect;
-    const Scattering scattering{at.normal, at.optics.reflectance, at.optics.transmittance};
-    return indirect + light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
+        return result;
+    const Scattering scattering{
+        at.normal,   at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
+        at.roughness};
+    const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
+    result.direct = lights.scattered;
+    result.reflection = lights.reflected;
+    return result;
 }
 
 } // namespace kokage

@@ -16,18 +16,37 @@ struct ShadingScratch {
     std::vector<float> weights;
 };
 
+/// What lights send to a viewer by way of a surface.
+struct LightFromLights {
+    glm::vec3 scattered{0.f}, reflected{0.f}; ///< by the diffuse surface, and by its gloss
+};
+
 /// Traces the chosen lights' shadow rays and adds up what arrives.
-glm::vec3 light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
-                            const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch);
+LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
+                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch);
+
+/// What a surface sends to a camera, in its parts.
+struct SurfaceRadiance {
+    glm::vec3 direct{0.f};     ///< from split-off lights
+    glm::vec3 indirect{0.f};   ///< from all else
+    glm::vec3 reflection{0.f}; ///< by the surface's gloss, of all light
+    glm::vec3 total() const { return direct + indirect + reflection; }
+};
 
 class SurfaceShading {
   public:
     /// Checks that the scene's arrays agree in size (InputError). All three must outlive it.
     SurfaceShading(const ShadedScene& scene, const RayQueries& queries, const LightChoice& lights, bool pixel_shadows);
 
-    /// Radiance at a triangle's hit, towards where the ray came from.
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit, SampleIndex sample,
-                       ShadingScratch& scratch) const;
+    SurfacePoint point(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const {
+        return points_.at(origin, direction, hit);
+    }
+    /// Towards where a ray of this direction came from; gloss shows split-off lights alone (gloss_shading.h has the
+    /// rest).
+    SurfaceRadiance radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                             ShadingScratch& scratch) const;
+    /// The solution's, of all light: no ray is traced.
+    glm::vec3 solved_radiance(const SurfacePoint& at) const;
 
   private:
     glm::vec3 solved(const SurfacePoint& at) const;

@@ -1,0 +1,85 @@
+#include "reflection/gloss_shading.h"
+#include "common/environment/lat_long.h"
+#include "reflection/sampling.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace kokage {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr std::uint32_t kLobePattern = 0x9e3779b9u; ///< makes numbers of its own of a pixel's
+
+struct RoughnessRange {
+    float least = 1, most = 0;
+};
+
+/// Of all glossy looks; least > most where there is none.
+RoughnessRange roughness_of(const ShadedScene& scene) {
+    RoughnessRange range;
+    for (const SurfaceLook& look : scene.looks) {
+        if (look.gloss.is_matt())
+            continue;
+        float least = 1, most = look.gloss.roughness_texture ? 0.f : 1.f;
+        if (look.gloss.roughness_texture) {
+            const Image& texture = *look.gloss.roughness_texture;
+            for (std::size_t k = 0; k < texture.pixels.size(); k += std::size_t(texture.channels)) {
+                least = std::min(least, texture.pixels[k]);
+                most = std::max(most, texture.pixels[k]);
+            }
+        }
+        range.least = std::min(range.least, least * look.gloss.roughness);
+        range.most = std::max(range.most, most * look.gloss.roughness);
+    }
+    return range;
+}
+
+} // namespace
+
+GlossShading::GlossShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                           const SurfaceShading& surfaces, const GroundLook& ground, const GroundShading& ground_light,
+                           Progress& progress, WorkReport& report)
+    : queries_(queries), environment_(environment), surfaces_(surfaces), ground_(ground), ground_light_(ground_light) {
+    const RoughnessRange range = roughness_of(scene);
+    if (range.least > range.most) {
+        report.skips.push_back({"reflection map", "nothing glossy is in the scene", "one bake of the surroundings"});
+        return;
+    }
+    // The horizon's correction reads narrower lobes than the surface's own.
+    remainder_.emplace(environment, std::clamp(0.4f * range.least, kLeastRoughness, 1.f),
+                       std::clamp(range.most, kLeastRoughness, 1.f), progress, report);
+}
+
+glm::vec3 GlossShading::seen_along(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
+                                   ShadingScratch& scratch, bool& met) const {
+    RayHit hit;
+    const float ground_distance = ground_.distance(origin, direction);
+    met = true;
+    if (queries_.first_hit(origin, direction, queries_.ray_offset(), kInfinity, hit) && !hit.ground &&
+        hit.distance <= ground_distance)
+        return surfaces_.solved_radiance(surfaces_.point(origin, direction, hit));
+    if (ground_distance < kInfinity)
+        return ground_light_.radiance(origin, direction, ground_distance, sample, scratch);
+    met = false;
+    return glm::vec3(0.f);
+}
+
+glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                 ShadingScratch& scratch) const {
+    if (!remainder_ || !(at.gloss.r > 0 || at.gloss.g > 0 || at.gloss.b > 0))
+        return glm::vec3(0.f);
+    const glm::vec3 mirrored = glm::normalize(glm::reflect(direction, at.normal));
+    glm::vec3 light = remainder_->radiance(at.normal, mirrored, at.roughness);
+    const LobeSample drawn =
+        sample_gloss(mirrored, at.roughness, multi_jittered(sample.index, sample.count, sample.pattern ^ kLobePattern));
+    if (glm::dot(at.normal, drawn.direction) > 0) {
+        bool met = false;
+        const glm::vec3 seen = seen_along(at.point, drawn.direction, sample, scratch, met);
+        light += drawn.weight * (met ? seen - lat_long_radiance(environment_.remainder, drawn.direction)
+                                     : wide_lights_in(environment_, drawn.direction, at.roughness));
+    }
+    return at.gloss * light;
+}
+
+} // namespace kokage

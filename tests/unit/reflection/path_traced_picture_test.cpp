@@ -1,0 +1,123 @@
+#include "common/environment/analytic_sky.h"
+#include "common/services/parallel.h"
+#include "reflection/path_traced_picture.h"
+#include "tests/unit/reflection/picture_scenes.h"
+
+#include <cmath>
+#include <gtest/gtest.h>
+
+namespace kokage::test {
+namespace {
+
+/// A ball of one patch with smooth normals.
+struct Ball {
+    PatchScene patches;
+    ShadedScene scene;
+
+    explicit Ball(const Optics& optics, const Gloss& gloss) {
+        constexpr int kRings = 48, kSegments = 96;
+        for (int r = 0; r <= kRings; ++r)
+            for (int s = 0; s < kSegments; ++s) {
+                const float polar = kPi * float(r) / kRings, azimuth = 2 * kPi * float(s) / kSegments;
+                patches.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::cos(polar),
+                                               -std::sin(polar) * std::sin(azimuth));
+            }
+        const auto at = [&](int r, int s) { return std::uint32_t(r * kSegments + s % kSegments); };
+        for (int r = 0; r < kRings; ++r)
+            for (int s = 0; s < kSegments; ++s) {
+                patches.triangles.emplace_back(at(r, s), at(r + 1, s), at(r + 1, s + 1));
+                patches.triangles.emplace_back(at(r, s), at(r + 1, s + 1), at(r, s + 1));
+            }
+        patches.triangle_patch.assign(patches.triangles.size(), 0);
+        patches.patches.push_back({0, std::uint32_t(patches.triangles.size()), 0, PatchKind::bark, 0});
+        patches.optics = {optics};
+        scene = evenly_shaded(patches, glm::vec3(0.f));
+        scene.normals = patches.positions;
+        SurfaceLook look;
+        look.gloss = gloss;
+        look.smooth_normals = true;
+        scene.looks = {look};
+        scene.triangle_look.assign(patches.triangles.size(), 0);
+    }
+};
+
+Gloss varnish(float roughness, float reflectance = 0.5f) {
+    Gloss gloss;
+    gloss.normal_reflectance = glm::vec3(reflectance);
+    gloss.roughness = roughness;
+    return gloss;
+}
+
+glm::dvec3 mean_of(const Image& image) {
+    glm::dvec3 sum(0.);
+    for (std::size_t k = 0; k < image.pixels.size(); ++k)
+        sum[k % 3] += double(image.pixels[k]);
+    return sum * 3. / double(image.pixels.size());
+}
+
+/// The middle of the ball: everything seen belongs to it.
+Camera close_camera() {
+    return camera_at({0, 0, 4}, {0, 0, 0}, 0.2f);
+}
+
+TEST(PathTracedPicture, WhiteFurnaceGivesBackWhatDoesNotGetLost) {
+    // Under a sky of 1 a convex ball shows its diffuse albedo plus K times the lobe's mass above the horizon, which
+    // near its middle is nearly all of it.
+    const Ball ball({glm::vec3(0.3f), glm::vec3(0.f)}, varnish(0.2f, 0.25f));
+    const RayQueries queries(ball.patches);
+    const Environment white = constant_environment(glm::vec3(1.f));
+    const Image picture = render_path_traced(ball.scene, queries, white, camera_at({0, 0, 4}, {0, 0, 0}, 0.02f),
+                                             small_picture(16, 16, 256), silent_progress());
+    EXPECT_NEAR(mean_of(picture).x, 0.3 + 0.25, 5e-3);
+}
+
+TEST(PathTracedPicture, AgreesWithTheRendererOnAGlossyBall) {
+    const Environment gradient = gradient_environment({0.2f, 0.5f, 1.f}, {0.9f, 0.8f, 0.6f}, {0.1f, 0.05f, 0.02f});
+    for (const float roughness : {0.25f, 0.5f, 0.9f}) {
+        const Ball ball({glm::vec3(0.f), glm::vec3(0.f)}, varnish(roughness));
+        const RayQueries queries(ball.patches);
+        PictureOptions options = small_picture(24, 24, 64);
+        options.ground = PictureGround::none;
+        const glm::dvec3 fast =
+            mean_of(render_picture(ball.scene, queries, gradient, close_camera(), options, silent_progress()));
+        options.samples = 400;
+        const glm::dvec3 truth =
+            mean_of(render_path_traced(ball.scene, queries, gradient, close_camera(), options, silent_progress()));
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(fast[c] / truth[c], 1, 0.015) << roughness;
+    }
+}
+
+TEST(PathTracedPicture, SunsGlintIsTheSameByBothMethods) {
+    Environment sun = constant_environment(glm::vec3(0.f));
+    sun.distant_lights.push_back(disc_light({0.3f, 0.4f, 1}, 0.02f, glm::vec3(2.f)));
+    for (const float roughness : {0.1f, 0.4f}) { // the lobe is narrower than the disc, and wider
+        const Ball ball({glm::vec3(0.2f), glm::vec3(0.f)}, varnish(roughness));
+        const RayQueries queries(ball.patches);
+        PictureOptions options = small_picture(24, 24, 64);
+        options.ground = PictureGround::none;
+        const Camera camera = camera_at({0, 0, 4}, {0, 0, 0}, 0.45f);
+        const glm::dvec3 fast = mean_of(render_picture(ball.scene, queries, sun, camera, options, silent_progress()));
+        options.samples = 400;
+        const glm::dvec3 truth =
+            mean_of(render_path_traced(ball.scene, queries, sun, camera, options, silent_progress()));
+        EXPECT_NEAR(fast.x / truth.x, 1, 0.02) << roughness;
+    }
+}
+
+TEST(PathTracedPicture, SameBitsForAnyNumberOfThreads) {
+    const Ball ball({glm::vec3(0.5f), glm::vec3(0.f)}, varnish(0.3f));
+    const RayQueries queries(ball.patches);
+    const Environment white = constant_environment(glm::vec3(1.f));
+    const auto draw = [&](int threads) {
+        set_thread_count(threads);
+        const Image image =
+            render_path_traced(ball.scene, queries, white, close_camera(), small_picture(20, 20, 4), silent_progress());
+        set_thread_count(0);
+        return image.pixels;
+    };
+    EXPECT_EQ(draw(1), draw(3));
+}
+
+} // namespace
+} // namespace kokage::test
