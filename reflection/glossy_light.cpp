@@ -1,5 +1,6 @@
 #include "reflection/glossy_light.h"
 #include "common/directions/lobes.h"
+#include "common/environment/lat_long.h"
 #include "reflection/maps/make_baker.h"
 
 #include <algorithm>
@@ -48,7 +49,7 @@ GlossyRemainder::GlossyRemainder(const Environment& environment, float least_rou
                                  Progress& progress, WorkReport& report)
     : map_(shell_settings(least_roughness, most_roughness)), horizon_(LobeKind::ggx) {
     Environment remainder;
-    remainder.remainder = environment.remainder;
+    remainder.remainder = with_square_pixels(environment.remainder);
     const std::unique_ptr<Baker> baker =
         is_same_everywhere(remainder)
             ? same_everywhere_baker(report)

@@ -44,8 +44,8 @@ struct TruthOfPicture {
 
 } // namespace
 
-Image render_path_traced(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                         const Camera& camera, const PictureOptions& options, Progress& progress, Image* subject) {
+Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                           const Camera& camera, const PictureOptions& options, Progress& progress) {
     check_picture_options(options);
     if (!scene.patches)
         throw InputError("picture: there is no scene of patches");
@@ -58,9 +58,9 @@ Image render_path_traced(const ShadedScene& scene, const RayQueries& queries, co
     const PathIntegrator paths(scene, queries, environment);
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 
-    Image picture(options.width, options.height, 3);
-    if (subject)
-        *subject = Image(options.width, options.height, 1);
+    Picture picture;
+    picture.radiance = Image(options.width, options.height, 3);
+    picture.subject = Image(options.width, options.height, 1);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("tracing paths", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 1, [&](std::size_t begin, std::size_t end) {
@@ -76,9 +76,8 @@ Image render_path_traced(const ShadedScene& scene, const RayQueries& queries, co
                     sum += displayable(truth.radiance(frame.position, rays.direction(s), numbers, met));
                 }
                 for (int c = 0; c < 3; ++c)
-                    picture.at(x, y)[c] = float(sum[std::size_t(c)] / samples);
-                if (subject)
-                    subject->at(x, y)[0] = float(met) / float(samples);
+                    picture.radiance.at(x, y)[c] = float(sum[std::size_t(c)] / samples);
+                picture.subject.at(x, y)[0] = float(met) / float(samples);
             }
         progress.advance(end - begin);
     });

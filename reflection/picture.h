@@ -4,6 +4,7 @@
 #include "common/scene/image.h"
 #include "common/scene/patch_scene.h"
 #include "common/services/progress.h"
+#include "common/services/work_report.h"
 #include "common/trace/ray_queries.h"
 #include "reflection/gloss.h"
 
@@ -58,6 +59,7 @@ struct PictureOptions {
     bool pixel_shadows = true;
     PictureGround ground = PictureGround::automatic;
     std::uint64_t seed = 1;
+    bool layers = false; ///< also Picture::layers
 };
 
 /// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's
@@ -72,13 +74,29 @@ Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
 /// stands overhead.
 float photographers_azimuth(const Environment& environment);
 
-/// Linear radiance picture, 3 channels, finite. `subject` (null = not wanted) gets 1 channel as large: the share of
-/// each pixel's rays that met the scene's surfaces, and neither ground nor surroundings. The ground is lit per pixel:
-/// lights shadow-tested, sky and light from the tree gathered over the hemisphere at the nodes of a grid that is finer
-/// near the tree, and interpolated. The same bits for any number of threads. Throws InputError if sizes disagree,
-/// Stopped if the user stopped.
-Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                     const Camera& camera, const PictureOptions& options, Progress& progress, Image* subject = nullptr);
+/// What each pixel shows, taken apart: all as large as the picture, linear, means over the pixel's rays unless said.
+struct PictureLayers {
+    Image albedo;     ///< 3: reflectance of what is seen, without its gloss; 0 where nothing is met
+    Image normal;     ///< 3: unit, in the world, on the side that is seen, relief in it; of the nearest of all; 0: none
+    Image depth;      ///< 1: metres along the viewing axis to the nearest point; infinite where nothing is met
+    Image direct;     ///< 3: scattered light of split-off lights that arrives unscattered
+    Image indirect;   ///< 3: scattered light of all else
+    Image reflection; ///< 3: by gloss, of all light
+    Image leaf;       ///< 1: number of the leaf (from 1) that most rays met; 0: none
+};
+
+struct Picture {
+    Image radiance; ///< linear, 3 channels, finite; direct + indirect + reflection where a surface or ground is seen
+    Image subject;  ///< 1: the share of each pixel's rays that met surfaces, neither ground nor surroundings
+    std::optional<PictureLayers> layers; ///< if asked for
+    WorkReport report;                   ///< stages, counts (rays), skips
+};
+
+/// The ground is lit per pixel: lights shadow-tested, sky and light from the tree gathered over the hemisphere at the
+/// nodes of a grid that is finer near the tree, and interpolated. The same bits for any number of threads. Throws
+/// InputError if sizes disagree, Stopped if the user stopped.
+Picture render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                       const Camera& camera, const PictureOptions& options, Progress& progress);
 
 /// The exposure that tone_map chooses by itself, in stops: radiance x 2^stops is what the curve sees. 0 for a black
 /// picture. Metered like a camera, the middle of the picture counting most: the geometric mean of luminance goes to

@@ -43,8 +43,8 @@ struct Renderer {
 
 } // namespace
 
-Image render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                     const Camera& camera, const PictureOptions& options, Progress& progress, Image* subject) {
+Picture render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                       const Camera& camera, const PictureOptions& options, Progress& progress) {
     check_picture_options(options);
     if (!scene.patches)
         throw InputError("picture: there is no scene of patches");
@@ -55,14 +55,13 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
     const LightChoice lights(environment, options.light_samples);
     const SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
     const GroundLook ground(scene, environment, backdrop, camera, options);
+    Picture picture;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    WorkReport report;
-    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, report);
+    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, picture.report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss};
 
-    Image picture(options.width, options.height, 3);
-    if (subject)
-        *subject = Image(options.width, options.height, 1);
+    picture.radiance = Image(options.width, options.height, 3);
+    picture.subject = Image(options.width, options.height, 1);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("rendering the picture", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 2, [&](std::size_t begin, std::size_t end) {
@@ -77,9 +76,8 @@ Image render_picture(const ShadedScene& scene, const RayQueries& queries, const 
                     sum +=
                         displayable(renderer.radiance(frame.position, rays.direction(s), rays.index(s), scratch, met));
                 for (int c = 0; c < 3; ++c)
-                    picture.at(x, y)[c] = float(std::max(sum[std::size_t(c)], 0.) / samples);
-                if (subject)
-                    subject->at(x, y)[0] = float(met) / float(samples);
+                    picture.radiance.at(x, y)[c] = float(std::max(sum[std::size_t(c)], 0.) / samples);
+                picture.subject.at(x, y)[0] = float(met) / float(samples);
             }
         progress.advance(end - begin);
     });

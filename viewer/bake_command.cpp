@@ -1,4 +1,5 @@
 // `kokage bake`: surroundings -> light filtered by ever wider lobes, as a map that renderers look up.
+#include "common/environment/lat_long.h"
 #include "common/environment/light_description.h"
 #include "common/environment/load_environment.h"
 #include "common/services/count_text.h"
@@ -8,8 +9,8 @@
 #include "viewer/bake_options.h"
 #include "viewer/bake_report.h"
 #include "viewer/command.h"
+#include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
-#include "viewer/values.h"
 #include "viewer/write_json.h"
 
 #include <cstdio>
@@ -132,8 +133,9 @@ void bake_one(const BakeOptions& options, const CommandContext& context) {
     const std::unique_ptr<BakedMap> map = make_map(options.map);
     BakeRecord record = begin_record(options);
     const Stopwatch loading;
-    const Environment environment =
-        obtain_environment(options.surroundings, glm::dvec3(0), record.environment_report, false);
+    Environment environment = obtain_environment(options.surroundings, glm::dvec3(0), record.environment_report, false);
+    if (!is_environment_image(options.surroundings) && !is_same_everywhere(environment))
+        environment.remainder = with_square_pixels(std::move(environment.remainder));
     record.environment = &environment;
     record.work.stages.push_back({"reading the surroundings", loading.cpu(), loading.wall()});
     record.work.warnings.insert(record.work.warnings.end(), record.environment_report.warnings.begin(),

@@ -6,9 +6,9 @@
 #include "reflection/maps/bake_sequence.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/image_sequence.h"
-#include "viewer/data_folder.h"
-#include "viewer/output_check.h"
-#include "viewer/values.h"
+#include "viewer/scene/data_folder.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/values.h"
 
 #include <algorithm>
 #include <cstdio>

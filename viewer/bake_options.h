@@ -1,7 +1,7 @@
 #pragma once
 // What `kokage bake` can be told.
 #include "reflection/maps/baked_map.h"
-#include "viewer/surroundings.h"
+#include "viewer/scene/surroundings.h"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

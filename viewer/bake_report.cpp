@@ -1,5 +1,5 @@
 #include "viewer/bake_report.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
 #include "viewer/shading_report.h"
 
 #include <nlohmann/json.hpp>

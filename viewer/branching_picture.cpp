@@ -143,7 +143,8 @@ Image draw(const PatchScene& scene, const std::vector<glm::vec3>& colors, const 
     options.pixel_shadows = false;
     options.ground = PictureGround::none;
     const RayQueries queries(scene);
-    Image picture = render_picture(shaded, queries, constant_environment(glm::vec3(1.f)), camera, options, progress);
+    Image picture =
+        render_picture(shaded, queries, constant_environment(glm::vec3(1.f)), camera, options, progress).radiance;
     for (float& value : picture.pixels)
         value = srgb_from_linear(std::min(value, 1.f));
     return picture;

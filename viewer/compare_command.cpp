@@ -7,9 +7,9 @@
 #include "viewer/command.h"
 #include "viewer/compare_maps.h"
 #include "viewer/compare_trees.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
-#include "viewer/values.h"
 #include "viewer/write_json.h"
 
 #include <algorithm>

@@ -4,7 +4,7 @@
 #include "common/services/named_file.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
 
 #include <algorithm>
 

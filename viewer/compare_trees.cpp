@@ -86,7 +86,8 @@ Image draw(const ShadedFile& reference, const std::vector<double>& errors, doubl
     options.ground = PictureGround::none;
     const RayQueries queries(reference.scene);
     const Camera camera = frame_scene(bounds_of(reference.scene), float(options.width) / float(options.height));
-    Image picture = render_picture(shaded, queries, constant_environment(glm::vec3(0.f)), camera, options, progress);
+    Image picture =
+        render_picture(shaded, queries, constant_environment(glm::vec3(0.f)), camera, options, progress).radiance;
     for (float& value : picture.pixels)
         value = srgb_from_linear(value);
     return picture;

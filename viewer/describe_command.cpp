@@ -5,9 +5,9 @@
 #include "trees/describe.h"
 #include "viewer/branching_picture.h"
 #include "viewer/command.h"
-#include "viewer/data_folder.h"
-#include "viewer/output_check.h"
-#include "viewer/tree_source.h"
+#include "viewer/scene/data_folder.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/tree_source.h"
 
 #include <cstdio>
 #include <filesystem>

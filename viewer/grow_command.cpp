@@ -8,10 +8,10 @@
 #include "trees/write_tree.h"
 #include "viewer/command.h"
 #include "viewer/grow_variants.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/tree_source.h"
+#include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
-#include "viewer/tree_source.h"
-#include "viewer/values.h"
 
 #include <algorithm>
 #include <cstdio>

@@ -6,8 +6,8 @@
 #include "trees/describe.h"
 #include "trees/growth.h"
 #include "trees/write_tree.h"
+#include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
-#include "viewer/values.h"
 #include "viewer/write_json.h"
 
 #include <algorithm>

@@ -1,7 +1,7 @@
 #pragma once
 // `kokage grow --seeds 1..N`: many individuals of a species in a folder, with a manifest.
 #include "viewer/command.h"
-#include "viewer/tree_source.h"
+#include "viewer/scene/tree_source.h"
 
 #include <cstdint>
 #include <filesystem>

@@ -5,14 +5,14 @@
 #include "common/services/named_file.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/shaded_scene.h"
+#include "viewer/scene/stage_clock.h"
+#include "viewer/scene/values.h"
 #include "viewer/shade_lods.h"
 #include "viewer/shade_options.h"
-#include "viewer/shaded_scene.h"
 #include "viewer/shading_report.h"
-#include "viewer/stage_clock.h"
 #include "viewer/stop_signal.h"
-#include "viewer/values.h"
 #include "viewer/write_json.h"
 
 #include <algorithm>
@@ -31,18 +31,17 @@ struct Shading {
     PatchScene patches;
     PatchOrigins origins;
     Solution solution;
-    std::optional<Image> picture; ///< linear radiance
-    Image subject;                ///< where the picture shows the tree
+    std::optional<Picture> picture;
     std::vector<std::string> warnings;
 };
 
-Image draw(const Shading& shading, const ShadeOptions& options, Image& subject, Progress& progress) {
+Picture draw(const Shading& shading, const ShadeOptions& options, Progress& progress) {
     ShadedScene scene = shaded_scene(shading.tree, shading.patches, shading.origins, shading.solution);
     scene.foot_height = foot_height(shading.tree);
     const RayQueries queries(shading.patches);
     const float aspect = float(options.picture.width) / float(options.picture.height);
     const Camera camera = frame_scene(shading.patches, aspect, photographers_azimuth(shading.environment));
-    return render_picture(scene, queries, shading.environment, camera, options.picture, progress, &subject);
+    return render_picture(scene, queries, shading.environment, camera, options.picture, progress);
 }
 
 /// For a stranger's file in which nothing was taken for leaves; nothing to say of bare trees that know themselves bare.
@@ -96,7 +95,7 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
                              "shines on it");
     progress.throw_if_stopped();
     if (!options.image.empty())
-        s.picture = clock.run("picture", [&] { return draw(s, options, s.subject, progress); });
+        s.picture = clock.run("picture", [&] { return draw(s, options, progress); });
     progress.throw_if_stopped();
 }
 
@@ -110,12 +109,12 @@ void write_shaded_tree(const ShadeOptions& options, const Shading& s, Progress& 
     write_tree(options.output, s.tree, &attributes, {.split_sides = options.split_sides}, progress);
 }
 
-void write_picture(const ShadeOptions& options, const Image& radiance, const Image& subject) {
+void write_picture(const ShadeOptions& options, const Picture& picture) {
     if (lower_ending(options.image) == ".png")
-        save_image(options.image, tone_map(radiance, options.picture.exposure_stops, &subject),
+        save_image(options.image, tone_map(picture.radiance, options.picture.exposure_stops, &picture.subject),
                    {.png_encoding = PngEncoding::as_is});
     else
-        save_image(options.image, radiance);
+        save_image(options.image, picture.radiance);
 }
 
 /// " (asked for 5 %)" where an error was asked for.
@@ -206,7 +205,7 @@ void run_shade(const CLI::App& app, ShadeOptions& options, const CommandContext&
         if (!options.output.empty())
             write_shaded_tree(options, shading, *context.progress);
         if (shading.picture)
-            write_picture(options, *shading.picture, shading.subject);
+            write_picture(options, *shading.picture);
     });
     record.tree = &shading.tree;
     record.patches = &shading.patches;

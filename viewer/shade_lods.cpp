@@ -5,7 +5,7 @@
 #include "reflection/compare_images.h"
 #include "reflection/impostor.h"
 #include "trees/levels_of_detail.h"
-#include "viewer/shaded_scene.h"
+#include "viewer/scene/shaded_scene.h"
 #include "viewer/write_json.h"
 
 #include <algorithm>

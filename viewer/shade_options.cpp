@@ -1,10 +1,10 @@
 #include "viewer/shade_options.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
-#include "viewer/data_folder.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/data_folder.h"
+#include "viewer/scene/output_check.h"
+#include "viewer/scene/values.h"
 #include "viewer/shade_lods.h"
-#include "viewer/values.h"
 
 #include <cmath>
 #include <cstdlib>

@@ -2,8 +2,8 @@
 // What `kokage shade` can be told.
 #include "foliage/method.h"
 #include "reflection/picture.h"
-#include "viewer/surroundings.h"
-#include "viewer/tree_source.h"
+#include "viewer/scene/surroundings.h"
+#include "viewer/scene/tree_source.h"
 
 #include <filesystem>
 

@@ -99,4 +99,15 @@ Image reduce_lat_long(Image image, int width) {
     return result;
 }
 
+Image with_square_pixels(Image image) {
+    const int times = image.empty() ? 1 : (2 * image.height + image.width - 1) / image.width;
+    if (times <= 1)
+        return image;
+    Image divided(image.width * times, image.height, image.channels);
+    for (int y = 0; y < divided.height; ++y)
+        for (int x = 0; x < divided.width; ++x)
+            std::copy_n(image.at(x / times, y), image.channels, divided.at(x, y));
+    return divided;
+}
+
 } // namespace kokage

@@ -25,5 +25,7 @@ glm::vec3 lat_long_radiance(const Image& image, const glm::vec3& direction);
 /// Shrinks to `width` columns (rows in proportion, at least 1): every new pixel is the solid-angle mean of what it
 /// covers, so the integral over the sphere is kept, of every channel. An image that is not wider is returned as it is.
 Image reduce_lat_long(Image image, int width);
+/// Divides pixels that are wider than high at the equator into square ones: for whoever takes a pixel for a point.
+Image with_square_pixels(Image image);
 
 } // namespace kokage

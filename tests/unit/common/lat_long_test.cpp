@@ -105,4 +105,18 @@ TEST(LatLong, ReducingGivesTheSameBitsWithAnyNumberOfThreads) {
     EXPECT_EQ(one.pixels, two.pixels);
 }
 
+TEST(LatLong, SquarePixelsHoldTheSameLight) {
+    Image strip(4, 512, 3);
+    for (std::size_t k = 0; k < strip.pixels.size(); ++k)
+        strip.pixels[k] = float(k % 97);
+    const Image divided = with_square_pixels(strip);
+    EXPECT_EQ(divided.width, 1024);
+    EXPECT_EQ(divided.height, 512);
+    for (int x = 0; x < 1024; ++x)
+        EXPECT_EQ(divided.at(x, 300)[1], strip.at(x / 256, 300)[1]);
+    EXPECT_EQ(with_square_pixels(Image(1024, 512, 3)).width, 1024);
+    EXPECT_EQ(with_square_pixels(Image(5, 5, 3)).width, 10);
+    EXPECT_TRUE(with_square_pixels(Image()).empty());
+}
+
 } // namespace

@@ -15,7 +15,7 @@ using namespace test;
 Image render(const ShadedScene& scene, const Environment& environment, const Camera& camera,
              const PictureOptions& options) {
     const RayQueries queries(*scene.patches);
-    return render_picture(scene, queries, environment, camera, options, silent_progress());
+    return render_picture(scene, queries, environment, camera, options, silent_progress()).radiance;
 }
 
 void expect_all(const Image& image, const glm::vec3& value, float tolerance) {

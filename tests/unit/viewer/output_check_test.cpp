@@ -1,6 +1,6 @@
 #include "common/services/error.h"
 #include "tests/support/program_run.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
 
 #include <sys/stat.h>
 

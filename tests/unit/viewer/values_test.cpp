@@ -1,5 +1,5 @@
 #include "common/services/error.h"
-#include "viewer/values.h"
+#include "viewer/scene/values.h"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "viewer/tree_source.h"
+#include "viewer/scene/tree_source.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "trees/growth.h"
 #include "trees/read_tree.h"
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
 
 #include <algorithm>
 #include <cctype>

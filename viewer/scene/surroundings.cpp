@@ -1,11 +1,11 @@
-#include "viewer/surroundings.h"
+#include "viewer/scene/surroundings.h"
 #include "common/environment/analytic_sky.h"
 #include "common/environment/light_description.h"
 #include "common/environment/load_environment.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "reflection/maps/map_file.h"
-#include "viewer/values.h"
+#include "viewer/scene/values.h"
 
 #include <algorithm>
 #include <cmath>

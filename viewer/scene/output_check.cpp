@@ -1,4 +1,4 @@
-#include "viewer/output_check.h"
+#include "viewer/scene/output_check.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "common/services/output_file.h"

@@ -1,4 +1,4 @@
-#include "viewer/values.h"
+#include "viewer/scene/values.h"
 #include "common/services/error.h"
 
 #include <charconv>

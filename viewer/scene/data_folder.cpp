@@ -1,4 +1,4 @@
-#include "viewer/data_folder.h"
+#include "viewer/scene/data_folder.h"
 
 #include "common/services/error.h"
 

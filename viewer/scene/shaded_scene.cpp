@@ -1,4 +1,4 @@
-#include "viewer/shaded_scene.h"
+#include "viewer/scene/shaded_scene.h"
 
 namespace kokage {
 
