@@ -40,18 +40,40 @@ std::string range_text(double low, double high) {
     return number_text(low) + " to " + number_text(high);
 }
 
+/// An object or array that the parser is in.
+struct OpenValue {
+    bool is_array = false;
+    std::size_t elements = 0;        ///< of an array, so far
+    std::string key = {};            ///< of the member or element that the parser is at
+    std::set<std::string> keys = {}; ///< of an object, so far
+};
+
+std::string pointer_to(const std::vector<OpenValue>& open) {
+    std::string pointer;
+    for (const OpenValue& value : open)
+        pointer += "/" + escaped(value.key);
+    return pointer;
+}
+
 } // namespace
 
 Json parse_json(std::string_view text, const std::string& file, const std::string& mend) {
-    std::vector<std::set<std::string>> keys;
+    std::vector<OpenValue> open;
     const auto watch = [&](int, Json::parse_event_t event, Json& parsed) {
-        if (event == Json::parse_event_t::object_start)
-            keys.emplace_back();
-        else if (event == Json::parse_event_t::object_end)
-            keys.pop_back();
-        else if (event == Json::parse_event_t::key && !keys.back().insert(parsed.get<std::string>()).second)
-            throw InputError(file + ": '" + shown_name(parsed.get<std::string>()) +
-                             "' stands there twice; take one away");
+        using Event = Json::parse_event_t;
+        if (event == Event::key) {
+            open.back().key = parsed.get<std::string>();
+            if (!open.back().keys.insert(open.back().key).second)
+                throw InputError(file + ": " + pointer_to(open) + ": '" + shown_name(open.back().key) +
+                                 "' stands there twice; take one away");
+        } else if (event == Event::object_end || event == Event::array_end) {
+            open.pop_back();
+        } else {
+            if (!open.empty() && open.back().is_array)
+                open.back().key = std::to_string(open.back().elements++);
+            if (event != Event::value)
+                open.push_back({.is_array = event == Event::array_start});
+        }
         return true;
     };
     try {

@@ -6,21 +6,28 @@ namespace kokage {
 namespace fs = std::filesystem;
 
 void add_data_option(CLI::App& app, fs::path& data, const std::string& what) {
-    app.add_option("--data", data, "A folder in which (and in whose env and trees) " + what + " looked for too")
+    app.add_option("--data", data,
+                   "A folder in which (and in whose env, trees, objects and textures) " + what + " looked for too")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
 }
 
-void find_in_data(const fs::path& data, const std::vector<std::string*>& names) {
+std::vector<fs::path> folders_of_data(const fs::path& data) {
     if (data.empty())
-        return;
+        return {};
     std::error_code ignored;
     if (!fs::is_directory(data, ignored))
         throw InputError("--data (or KOKAGE_DATA): there is no folder '" + data.string() + "'");
+    return {data, data / "env", data / "trees", data / "objects", data / "textures"};
+}
+
+void find_in_data(const fs::path& data, const std::vector<std::string*>& names) {
+    const std::vector<fs::path> folders = folders_of_data(data);
+    std::error_code ignored;
     for (std::string* name : names) {
         if (name->empty() || fs::exists(*name, ignored) || fs::path(*name).is_absolute())
             continue;
-        for (const fs::path& folder : {data, data / "env", data / "trees"})
+        for (const fs::path& folder : folders)
             if (fs::is_regular_file(folder / *name, ignored)) {
                 *name = (folder / *name).string();
                 break;

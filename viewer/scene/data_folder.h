@@ -10,7 +10,10 @@ namespace kokage {
 /// Adds --data; `what`: what is looked for there ("TREE is").
 void add_data_option(CLI::App& app, std::filesystem::path& data, const std::string& what);
 
-/// Names that are no file here become files of the data folder, of its env or of its trees, where they are there.
+/// A folder `data` and those in it that are looked into; none if it is empty. Throws InputError if it is no folder.
+std::vector<std::filesystem::path> folders_of_data(const std::filesystem::path& data);
+
+/// Names that are no file here become files of the data folder, or of the folders in it, where they are there.
 /// Throws InputError if `data` is given and no folder.
 void find_in_data(const std::filesystem::path& data, const std::vector<std::string*>& names);
 

@@ -74,7 +74,8 @@ struct SceneDescription {
     std::vector<PlacedTree> trees;
     std::vector<PlacedObject> objects;
     CameraDescription camera;
-    PictureOptions picture; ///< size, samples, exposure, seed
+    PictureOptions picture;            ///< size, samples, exposure, seed
+    std::vector<std::string> warnings; ///< what is there, but changes nothing
 };
 
 } // namespace kokage
