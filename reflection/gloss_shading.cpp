@@ -60,7 +60,7 @@ glm::vec3 GlossShading::seen_along(const glm::vec3& origin, const glm::vec3& dir
         hit.distance <= ground_distance)
         return surfaces_.solved_radiance(surfaces_.point(origin, direction, hit));
     if (ground_distance < kInfinity)
-        return ground_light_.radiance(origin, direction, ground_distance, sample, scratch);
+        return ground_light_.radiance(origin, direction, ground_distance, sample, scratch).total;
     met = false;
     return glm::vec3(0.f);
 }

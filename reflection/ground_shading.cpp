@@ -23,34 +23,36 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
             backdrop_irradiance_ += texel.irradiance * std::max(0.f, texel.direction.y);
 }
 
-glm::vec3 GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
-                                  SampleIndex sample, ShadingScratch& scratch) const {
+GroundRadiance GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
+                                       SampleIndex sample, ShadingScratch& scratch) const {
     if (direction.y >= 0)
-        return glm::vec3(0.f);
+        return {};
     const glm::vec3 point = look_.point(origin, direction, distance);
     return look_.mean_albedo() ? diffuse_plane(point, direction, distance, sample, scratch)
                                : shadowed_backdrop(point, direction, sample, scratch);
 }
 
-glm::vec3 GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
-                                  ShadingScratch& scratch) const {
+GroundRadiance GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
+                                       ShadingScratch& scratch) const {
     const Scattering scattering{kUp, albedo, glm::vec3(0.f)};
-    return albedo / kPi * light_->irradiance(point.x, point.z) +
-           light_from_lights(lights_, queries_, point, scattering, sample, scratch).scattered;
+    const glm::vec3 direct = light_from_lights(lights_, queries_, point, scattering, sample, scratch).scattered;
+    return {albedo / kPi * light_->irradiance(point.x, point.z) + direct, direct, albedo};
 }
 
-glm::vec3 GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,
-                                       SampleIndex sample, ShadingScratch& scratch) const {
+GroundRadiance GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,
+                                            SampleIndex sample, ShadingScratch& scratch) const {
     // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
     const float clear = look_.clear(distance);
-    glm::vec3 radiance(0.f);
+    GroundRadiance radiance;
     if (clear > 1e-4f)
-        radiance = clear * light_at(point, look_.albedo(point, direction, distance), sample, scratch);
-    return radiance + (1 - clear) * look_.haze(direction);
+        radiance = light_at(point, look_.albedo(point, direction, distance), sample, scratch);
+    radiance.total = clear * radiance.total + (1 - clear) * look_.haze(direction);
+    radiance.direct *= clear;
+    return radiance;
 }
 
-glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
-                                           ShadingScratch& scratch) const {
+GroundRadiance GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+                                                ShadingScratch& scratch) const {
     // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which
     // it was photographed sees every point of the ground in the direction in which the photograph has it, so only the
     // light on it must change: times (light with the scene) / (light without it). Far from the scene that tends to 1
@@ -58,13 +60,16 @@ glm::vec3 GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::ve
     const glm::vec3 seen = backdrop_.seen(direction);
     const float near = std::clamp((12 - look_.away(point)) / 8, 0.f, 1.f);
     if (near <= 0)
-        return seen;
-    const glm::vec3 now = kPi * light_at(point, glm::vec3(1.f), sample, scratch);
-    glm::vec3 ratio(1.f);
+        return {seen, glm::vec3(0.f), glm::vec3(0.f)};
+    const GroundRadiance light = light_at(point, glm::vec3(1.f), sample, scratch);
+    glm::vec3 ratio(1.f), direct(0.f);
     for (std::size_t c = 0; c < 3; ++c)
-        if (backdrop_irradiance_[c] > 0)
-            ratio[c] = now[c] / backdrop_irradiance_[c];
-    return seen * (1.f + near * near * (3 - 2 * near) * (ratio - 1.f));
+        if (backdrop_irradiance_[c] > 0) {
+            ratio[c] = kPi * light.total[c] / backdrop_irradiance_[c];
+            direct[c] = kPi * light.direct[c] / backdrop_irradiance_[c];
+        }
+    const float change = near * near * (3 - 2 * near);
+    return {seen * (1.f + change * (ratio - 1.f)), seen * (change * direct), glm::vec3(0.f)};
 }
 
 } // namespace kokage

@@ -8,6 +8,12 @@
 
 namespace kokage {
 
+struct GroundRadiance {
+    glm::vec3 total{0.f};
+    glm::vec3 direct{0.f}; ///< of it, from split-off lights
+    glm::vec3 albedo{0.f}; ///< 0 where the backdrop plays the ground
+};
+
 class GroundShading {
   public:
     /// All must outlive it.
@@ -15,16 +21,16 @@ class GroundShading {
                   const Backdrop& backdrop, const GroundLook& look, const LightChoice& lights, Progress& progress);
 
     /// Radiance of the ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
-                       ShadingScratch& scratch) const;
+    GroundRadiance radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
+                            ShadingScratch& scratch) const;
 
   private:
-    glm::vec3 diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
+    GroundRadiance diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
+                                 ShadingScratch& scratch) const;
+    GroundRadiance shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+                                     ShadingScratch& scratch) const;
+    GroundRadiance light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
                             ShadingScratch& scratch) const;
-    glm::vec3 shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
-                                ShadingScratch& scratch) const;
-    glm::vec3 light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
-                       ShadingScratch& scratch) const;
 
     const RayQueries& queries_;
     const Backdrop& backdrop_;

@@ -44,9 +44,7 @@ PathIntegrator::PathIntegrator(const ShadedScene& scene, const RayQueries& queri
         remainder_share_ = 0.5f * (1 - std::sqrt(float(kLowContrast / remainder_.contrast())));
 }
 
-PathVertex PathIntegrator::surface_vertex(const glm::vec3& origin, const glm::vec3& direction,
-                                          const RayHit& hit) const {
-    const SurfacePoint at = points_.at(origin, direction, hit);
+PathVertex PathIntegrator::surface_vertex(const SurfacePoint& at, const glm::vec3& direction) {
     return {at.point,
             at.geometric_normal,
             at.normal,
@@ -68,22 +66,25 @@ glm::vec3 PathIntegrator::start(const PathVertex& vertex, const glm::vec3& direc
     return vertex.point + (glm::dot(vertex.normal, direction) > 0 ? offset_ : -offset_) * vertex.geometric_normal;
 }
 
-glm::vec3 PathIntegrator::light(const PathVertex& vertex, PathNumbers& numbers) const {
+LightFromLights PathIntegrator::light(const PathVertex& vertex, PathNumbers& numbers) const {
     if (lights_.empty())
-        return glm::vec3(0.f);
+        return {};
     const float choice = numbers.single();
     const glm::vec2 place = numbers.pair();
     const auto ray = lights_.sample(vertex.point, vertex.normal, vertex.optics.reflectance + vertex.gloss,
                                     vertex.optics.transmittance, choice, place);
     if (!ray)
-        return glm::vec3(0.f);
+        return {};
     const float cosine = glm::dot(vertex.normal, ray->direction);
-    glm::vec3 weight = (cosine > 0 ? vertex.optics.reflectance * cosine : vertex.optics.transmittance * -cosine) / kPi;
+    const glm::vec3 scattered =
+        (cosine > 0 ? vertex.optics.reflectance * cosine : vertex.optics.transmittance * -cosine) / kPi;
+    glm::vec3 reflected(0.f);
     if (largest(vertex.gloss) > 0 && !(ray->distant && is_wide_for(*ray->distant, vertex.roughness)))
-        weight += lobe_of(vertex, ray->direction);
-    if (!(largest(weight) > 0) || queries_.occluded(start(vertex, ray->direction), ray->direction, 0, ray->distance))
-        return glm::vec3(0.f);
-    return weight * ray->irradiance;
+        reflected = lobe_of(vertex, ray->direction);
+    if (!(largest(scattered + reflected) > 0) ||
+        queries_.occluded(start(vertex, ray->direction), ray->direction, 0, ray->distance))
+        return {};
+    return {scattered * ray->irradiance, reflected * ray->irradiance};
 }
 
 /// One-sample multiple importance sampling (Veach 1997, 9.2.4) between the cosine lobes and the remainder's bright
@@ -129,11 +130,19 @@ PathIntegrator::Step PathIntegrator::scatter(const PathVertex& vertex, PathNumbe
     return step;
 }
 
-glm::vec3 PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) const {
-    glm::vec3 total(0.f), throughput(1.f);
-    for (;;) {
-        total += throughput * light(vertex, numbers);
+SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) const {
+    const LightFromLights first = light(vertex, numbers);
+    SurfaceRadiance seen{first.scattered, glm::vec3(0.f), first.reflected};
+    glm::vec3 bounced(0.f), throughput(1.f);
+    bool by_gloss = false; ///< the first bounce
+    for (int bounce = 0;; ++bounce) {
+        if (bounce > 0) {
+            const LightFromLights lights = light(vertex, numbers);
+            bounced += throughput * (lights.scattered + lights.reflected);
+        }
         const Step step = scatter(vertex, numbers);
+        if (bounce == 0)
+            by_gloss = step.glossy;
         throughput *= step.weight;
         const float survival = std::min(0.99f, kSurvival * largest(throughput));
         if (!(numbers.independent() < survival))
@@ -142,9 +151,9 @@ glm::vec3 PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) cons
         const glm::vec3 origin = start(vertex, step.direction);
         RayHit hit;
         if (!queries_.first_hit(origin, step.direction, 0, INFINITY, hit)) {
-            total += throughput * remainder_.radiance(step.direction);
+            bounced += throughput * remainder_.radiance(step.direction);
             if (step.glossy)
-                total += throughput * wide_lights_in(environment_, step.direction, vertex.roughness);
+                bounced += throughput * wide_lights_in(environment_, step.direction, vertex.roughness);
             break;
         }
         if (hit.ground && step.direction.y >= 0) // its underside
@@ -154,7 +163,8 @@ glm::vec3 PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) cons
         if (hit.ground)
             vertex.point.y = patches_.ground->height_m;
     }
-    return total;
+    (by_gloss ? seen.reflection : seen.indirect) += bounced;
+    return seen;
 }
 
 } // namespace kokage

@@ -4,6 +4,7 @@
 #include "common/trace/path_numbers.h"
 #include "common/trace/remainder_sampler.h"
 #include "reflection/surface_points.h"
+#include "reflection/surface_shading.h"
 
 namespace kokage {
 
@@ -24,10 +25,14 @@ class PathIntegrator {
     /// All must outlive it.
     PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment);
 
-    /// Radiance that a vertex sends to where it is seen from: one path with all its bounces.
-    glm::vec3 radiance(PathVertex vertex, PathNumbers& numbers) const;
+    /// What a vertex sends to where it is seen from: one path with all its bounces.
+    SurfaceRadiance radiance(PathVertex vertex, PathNumbers& numbers) const;
 
-    PathVertex surface_vertex(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const;
+    const SurfacePoints& points() const { return points_; }
+    PathVertex surface_vertex(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const {
+        return surface_vertex(points_.at(origin, direction, hit), direction);
+    }
+    static PathVertex surface_vertex(const SurfacePoint& at, const glm::vec3& direction);
     static PathVertex ground_vertex(const glm::vec3& point, const glm::vec3& albedo);
 
   private:
@@ -36,7 +41,7 @@ class PathIntegrator {
         glm::vec3 direction{0.f}, weight{0.f};
         bool glossy = false;
     };
-    glm::vec3 light(const PathVertex& vertex, PathNumbers& numbers) const;
+    LightFromLights light(const PathVertex& vertex, PathNumbers& numbers) const;
     Step scatter(const PathVertex& vertex, PathNumbers& numbers) const;
     Step scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const;
     glm::vec3 start(const PathVertex& vertex, const glm::vec3& direction) const;

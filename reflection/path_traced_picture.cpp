@@ -5,6 +5,7 @@
 #include "reflection/camera_rays.h"
 #include "reflection/ground_look.h"
 #include "reflection/path_integrator.h"
+#include "reflection/seen_by_ray.h"
 
 #include <algorithm>
 #include <limits>
@@ -20,25 +21,33 @@ struct TruthOfPicture {
     const GroundLook& ground;
     const PathIntegrator& paths;
 
-    /// `met` counts rays that met a surface.
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, PathNumbers& numbers,
-                       std::uint32_t& met) const {
+    SeenByRay seen(const glm::vec3& origin, const glm::vec3& direction, PathNumbers& numbers) const {
         RayHit hit;
         const float ground_distance = ground.distance(origin, direction);
         const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
         if (found && hit.distance <= ground_distance) {
-            ++met;
-            return paths.radiance(paths.surface_vertex(origin, direction, hit), numbers);
+            const SurfacePoint at = paths.points().at(origin, direction, hit);
+            SeenByRay seen = SeenByRay::surface_at(at, hit.distance, queries.scene());
+            const SurfaceRadiance light = paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers);
+            seen.radiance = light.total();
+            seen.direct = light.direct;
+            seen.indirect = light.indirect;
+            seen.reflection = light.reflection;
+            return seen;
         }
         if (!(ground_distance < kInfinity))
-            return backdrop.seen(direction);
+            return SeenByRay::surroundings(backdrop.seen(direction));
         if (direction.y >= 0)
-            return glm::vec3(0.f);
+            return SeenByRay::ground_at(glm::vec3(0.f), ground_distance);
         const glm::vec3 point = ground.point(origin, direction, ground_distance);
         const float clear = ground.clear(ground_distance);
         const glm::vec3 albedo = ground.albedo(point, direction, ground_distance);
-        return clear * paths.radiance(PathIntegrator::ground_vertex(point, albedo), numbers) +
-               (1 - clear) * ground.haze(direction);
+        const SurfaceRadiance light = paths.radiance(PathIntegrator::ground_vertex(point, albedo), numbers);
+        SeenByRay seen = SeenByRay::ground_at(albedo, ground_distance);
+        seen.direct = clear * light.direct;
+        seen.indirect = clear * light.indirect + (1 - clear) * ground.haze(direction);
+        seen.radiance = seen.direct + seen.indirect;
+        return seen;
     }
 };
 
@@ -58,26 +67,23 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     const PathIntegrator paths(scene, queries, environment);
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 
-    Picture picture;
-    picture.radiance = Image(options.width, options.height, 3);
-    picture.subject = Image(options.width, options.height, 1);
+    Picture picture = empty_picture(options);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("tracing paths", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 1, [&](std::size_t begin, std::size_t end) {
         progress.throw_if_stopped();
+        PixelSum sum(frame, options.layers);
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < options.width; ++x) {
                 const PixelRays rays(frame, options, x, y);
                 const std::uint64_t seed = hash64(options.seed ^ hash64(rays.pixel()));
-                glm::dvec3 sum(0.0);
-                std::uint32_t met = 0;
+                sum.clear();
                 for (std::uint32_t s = 0; s < samples; ++s) {
                     PathNumbers numbers(seed, s);
-                    sum += displayable(truth.radiance(frame.position, rays.direction(s), numbers, met));
+                    const glm::vec3 direction = rays.direction(s);
+                    sum.add(truth.seen(frame.position, direction, numbers), direction);
                 }
-                for (int c = 0; c < 3; ++c)
-                    picture.radiance.at(x, y)[c] = float(sum[std::size_t(c)] / samples);
-                picture.subject.at(x, y)[0] = float(met) / float(samples);
+                sum.store(picture, x, y);
             }
         progress.advance(end - begin);
     });

@@ -75,18 +75,21 @@ Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
 float photographers_azimuth(const Environment& environment);
 
 /// What each pixel shows, taken apart: all as large as the picture, linear, means over the pixel's rays unless said.
+/// Surroundings are in Picture::radiance alone: radiance - (direct + indirect + reflection) is what the pixel shows of
+/// them.
 struct PictureLayers {
-    Image albedo;     ///< 3: reflectance of what is seen, without its gloss; 0 where nothing is met
+    Image
+        albedo; ///< 3: reflectance of what is seen, without its gloss; 0 where surroundings are seen or play the ground
     Image normal;     ///< 3: unit, in the world, on the side that is seen, relief in it; of the nearest of all; 0: none
     Image depth;      ///< 1: metres along the viewing axis to the nearest point; infinite where nothing is met
     Image direct;     ///< 3: scattered light of split-off lights that arrives unscattered
-    Image indirect;   ///< 3: scattered light of all else
+    Image indirect;   ///< 3: scattered light of all else, and of the air before far ground
     Image reflection; ///< 3: by gloss, of all light
     Image leaf;       ///< 1: number of the leaf (from 1) that most rays met; 0: none
 };
 
 struct Picture {
-    Image radiance; ///< linear, 3 channels, finite; direct + indirect + reflection where a surface or ground is seen
+    Image radiance; ///< linear, 3 channels, finite, not negative
     Image subject;  ///< 1: the share of each pixel's rays that met surfaces, neither ground nor surroundings
     std::optional<PictureLayers> layers; ///< if asked for
     WorkReport report;                   ///< stages, counts (rays), skips

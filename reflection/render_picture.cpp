@@ -4,6 +4,7 @@
 #include "reflection/camera_rays.h"
 #include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
+#include "reflection/seen_by_ray.h"
 #include "reflection/surface_shading.h"
 
 #include <algorithm>
@@ -23,21 +24,30 @@ struct Renderer {
     const GroundShading& ground_light;
     const GlossShading& gloss;
 
-    /// `met` counts rays that met a surface.
-    glm::vec3 radiance(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample, ShadingScratch& scratch,
-                       std::uint32_t& met) const {
+    SeenByRay seen(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
+                   ShadingScratch& scratch) const {
         RayHit hit;
         const float ground_distance = ground.distance(origin, direction);
         const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
         if (found && hit.distance <= ground_distance) {
-            ++met;
             const SurfacePoint at = surfaces.point(origin, direction, hit);
-            return surfaces.radiance(at, direction, sample, scratch).total() +
-                   gloss.radiance(at, direction, sample, scratch);
+            SeenByRay seen = SeenByRay::surface_at(at, hit.distance, queries.scene());
+            SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
+            light.reflection += gloss.radiance(at, direction, sample, scratch);
+            seen.radiance = light.total();
+            seen.direct = light.direct;
+            seen.indirect = light.indirect;
+            seen.reflection = light.reflection;
+            return seen;
         }
-        if (ground_distance < kInfinity)
-            return ground_light.radiance(origin, direction, ground_distance, sample, scratch);
-        return backdrop.seen(direction);
+        if (!(ground_distance < kInfinity))
+            return SeenByRay::surroundings(backdrop.seen(direction));
+        const GroundRadiance light = ground_light.radiance(origin, direction, ground_distance, sample, scratch);
+        SeenByRay seen = SeenByRay::ground_at(light.albedo, ground_distance);
+        seen.radiance = light.total;
+        seen.direct = light.direct;
+        seen.indirect = light.total - light.direct;
+        return seen;
     }
 };
 
@@ -55,29 +65,26 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const LightChoice lights(environment, options.light_samples);
     const SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
     const GroundLook ground(scene, environment, backdrop, camera, options);
-    Picture picture;
+    Picture picture = empty_picture(options);
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
     const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, picture.report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss};
 
-    picture.radiance = Image(options.width, options.height, 3);
-    picture.subject = Image(options.width, options.height, 1);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("rendering the picture", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 2, [&](std::size_t begin, std::size_t end) {
         progress.throw_if_stopped();
         ShadingScratch scratch;
+        PixelSum sum(frame, options.layers);
         for (int y = int(begin); y < int(end); ++y)
             for (int x = 0; x < options.width; ++x) {
                 const PixelRays rays(frame, options, x, y);
-                glm::dvec3 sum(0.0);
-                std::uint32_t met = 0;
-                for (std::uint32_t s = 0; s < samples; ++s)
-                    sum +=
-                        displayable(renderer.radiance(frame.position, rays.direction(s), rays.index(s), scratch, met));
-                for (int c = 0; c < 3; ++c)
-                    picture.radiance.at(x, y)[c] = float(std::max(sum[std::size_t(c)], 0.) / samples);
-                picture.subject.at(x, y)[0] = float(met) / float(samples);
+                sum.clear();
+                for (std::uint32_t s = 0; s < samples; ++s) {
+                    const glm::vec3 direction = rays.direction(s);
+                    sum.add(renderer.seen(frame.position, direction, rays.index(s), scratch), direction);
+                }
+                sum.store(picture, x, y);
             }
         progress.advance(end - begin);
     });
