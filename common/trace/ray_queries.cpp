@@ -162,6 +162,11 @@ struct RayQueries::Implementation {
         return result;
     }
 
+    /// The answer for a hit of Embree's.
+    RayHit hit_of(unsigned geometry, unsigned primitive, float distance, glm::vec2 uv, const glm::vec3& normal) const {
+        return {distance * inverse_scale, triangles[geometry][primitive], uv, glm::normalize(normal), false};
+    }
+
     /// Distance to the ground plane along a ray; infinite if it is not met in (near, far).
     float ground_distance(const glm::vec3& origin, const glm::vec3& direction, float near, float far) const {
         if (!scene->ground || direction.y == 0)
@@ -181,6 +186,29 @@ void reject_holes(const RTCFilterFunctionNArguments* arguments) {
                            RTCHitN_v(arguments->hit, arguments->N, i)))
             arguments->valid[i] = 0;
 }
+
+constexpr std::size_t kPacket = 16;
+
+/// As many rays as Embree takes together; those that were not set are left alone.
+struct RayPacket {
+    alignas(64) int valid[kPacket] = {};
+    RTCRayHit16 query;
+    RTCIntersectContext context;
+
+    RayPacket() {
+        rtcInitIntersectContext(&context);
+        context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+    }
+    void set(std::size_t k, const RTCRay& ray) {
+        valid[k] = -1;
+        query.ray.org_x[k] = ray.org_x, query.ray.org_y[k] = ray.org_y, query.ray.org_z[k] = ray.org_z;
+        query.ray.dir_x[k] = ray.dir_x, query.ray.dir_y[k] = ray.dir_y, query.ray.dir_z[k] = ray.dir_z;
+        query.ray.tnear[k] = ray.tnear, query.ray.tfar[k] = ray.tfar;
+        query.ray.time[k] = 0, query.ray.mask[k] = ~0u, query.ray.id[k] = 0, query.ray.flags[k] = 0;
+        query.hit.geomID[k] = RTC_INVALID_GEOMETRY_ID;
+        query.hit.instID[0][k] = RTC_INVALID_GEOMETRY_ID;
+    }
+};
 
 } // namespace
 
@@ -202,11 +230,8 @@ bool RayQueries::first_hit(const glm::vec3& origin, const glm::vec3& direction, 
         rtcInitIntersectContext(&context);
         rtcIntersect1(self.embree_scene, &context, &query);
         if (query.hit.geomID != RTC_INVALID_GEOMETRY_ID) {
-            hit.distance = query.ray.tfar * self.inverse_scale;
-            hit.triangle = self.triangles[query.hit.geomID][query.hit.primID];
-            hit.barycentric = {query.hit.u, query.hit.v};
-            hit.geometric_normal = glm::normalize(glm::vec3(query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z));
-            hit.ground = false;
+            hit = self.hit_of(query.hit.geomID, query.hit.primID, query.ray.tfar, {query.hit.u, query.hit.v},
+                              {query.hit.Ng_x, query.hit.Ng_y, query.hit.Ng_z});
             return true;
         }
     }
@@ -227,6 +252,53 @@ bool RayQueries::occluded(const glm::vec3& origin, const glm::vec3& direction, f
     rtcInitIntersectContext(&context);
     rtcOccluded1(self.embree_scene, &context, &query);
     return query.tfar < 0;
+}
+
+void RayQueries::first_hits(std::span<const Ray> rays, std::span<RayHit> hits, std::span<std::uint8_t> found) const {
+    const Implementation& self = *implementation_;
+    for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+        const std::size_t count = std::min(kPacket, rays.size() - first);
+        RayPacket packet;
+        float ground[kPacket];
+        for (std::size_t k = 0; k < count; ++k) {
+            const Ray& ray = rays[first + k];
+            ground[k] = self.ground_distance(ray.origin, ray.direction, ray.near, ray.far);
+            packet.set(k, self.ray(ray.origin, ray.direction, ray.near, std::min(ray.far, ground[k])));
+        }
+        if (self.embree_scene)
+            rtcIntersect16(packet.valid, self.embree_scene, &packet.context, &packet.query);
+        for (std::size_t k = 0; k < count; ++k) {
+            const RTCHit16& hit = packet.query.hit;
+            found[first + k] = true;
+            if (hit.geomID[k] != RTC_INVALID_GEOMETRY_ID)
+                hits[first + k] = self.hit_of(hit.geomID[k], hit.primID[k], packet.query.ray.tfar[k],
+                                              {hit.u[k], hit.v[k]}, {hit.Ng_x[k], hit.Ng_y[k], hit.Ng_z[k]});
+            else if (ground[k] < INFINITY)
+                hits[first + k] = {ground[k], 0, glm::vec2(0), glm::vec3(0, 1, 0), true};
+            else
+                found[first + k] = false;
+        }
+    }
+}
+
+void RayQueries::occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const {
+    const Implementation& self = *implementation_;
+    for (std::size_t first = 0; first < rays.size(); first += kPacket) {
+        const std::size_t count = std::min(kPacket, rays.size() - first);
+        RayPacket packet;
+        for (std::size_t k = 0; k < count; ++k) {
+            const Ray& ray = rays[first + k];
+            hidden[first + k] = self.ground_distance(ray.origin, ray.direction, ray.near, ray.far) != INFINITY;
+            if (!hidden[first + k])
+                packet.set(k, self.ray(ray.origin, ray.direction, ray.near, ray.far));
+        }
+        if (!self.embree_scene)
+            continue;
+        rtcOccluded16(packet.valid, self.embree_scene, &packet.context, &packet.query.ray);
+        for (std::size_t k = 0; k < count; ++k)
+            if (packet.valid[k])
+                hidden[first + k] = packet.query.ray.tfar[k] < 0;
+    }
 }
 
 float RayQueries::ray_offset() const {

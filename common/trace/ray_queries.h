@@ -3,8 +3,14 @@
 #include "common/scene/patch_scene.h"
 
 #include <memory>
+#include <span>
 
 namespace kokage {
+
+struct Ray {
+    glm::vec3 origin{0.f}, direction{0, 0, 1}; ///< unit
+    float near = 0, far = 0;                   ///< only what lies between counts
+};
 
 struct RayHit {
     float distance = 0;
@@ -28,6 +34,12 @@ class RayQueries {
     bool first_hit(const glm::vec3& origin, const glm::vec3& direction, float near, float far, RayHit& hit) const;
     /// True if anything solid lies in (near, far).
     bool occluded(const glm::vec3& origin, const glm::vec3& direction, float near, float far) const;
+    /// The same for many rays at once, which is faster where neighbours go nearly the same way (camera rays of a pixel,
+    /// shadow rays to one light). `found` tells which of `hits` were set. All spans are as long as `rays`. Where
+    /// surfaces meet, or a ray passes within rounding of an edge, the answer may be the neighbour's of what a single
+    /// ray finds; the same rays in the same order give the same bits.
+    void first_hits(std::span<const Ray> rays, std::span<RayHit> hits, std::span<std::uint8_t> found) const;
+    void occluded(std::span<const Ray> rays, std::span<std::uint8_t> hidden) const;
     /// A distance below which a hit is taken for the surface that a ray left: scaled to the scene's size and place.
     float ray_offset() const;
     const PatchScene& scene() const;

@@ -195,5 +195,60 @@ TEST(RayQueries, HalfOfAHalfMaskedLeafIsOpen) {
     }
 }
 
+/// Rays of a camera, some of them short, some from below the ground.
+std::vector<Ray> camera_like_rays(std::size_t count) {
+    Random random(11);
+    std::vector<Ray> rays;
+    for (std::size_t k = 0; k < count; ++k) {
+        const glm::vec3 origin(0, k % 7 == 0 ? -1.f : 2.f, 6);
+        const glm::vec3 aim = glm::vec3(0, 1.5f, 0) + 2 * random.uniform() * test::random_direction(random);
+        rays.push_back({origin, glm::normalize(aim - origin), 0, k % 5 == 0 ? 6.f : INFINITY});
+    }
+    return rays;
+}
+
+TEST(RayQueries, ManyRaysAtOnceFindWhatEachFindsAlone) {
+    PatchScene scene = test::random_crown(300, 3, {});
+    test::mask_rectangles(scene, test::checkered_mask(5));
+    scene.ground = Ground{-0.5f, glm::vec3(0.2f)};
+    const RayQueries queries(scene);
+    for (const std::size_t count : {0u, 1u, 15u, 16u, 17u, 5000u}) {
+        const std::vector<Ray> rays = camera_like_rays(count);
+        std::vector<RayHit> hits(count);
+        std::vector<std::uint8_t> found(count, 7), hidden(count, 7);
+        queries.first_hits(rays, hits, found);
+        queries.occluded(rays, hidden);
+        std::size_t apart = 0, seen = 0;
+        for (std::size_t k = 0; k < count; ++k) {
+            const auto& [origin, direction, near, far] = rays[k];
+            RayHit alone;
+            const bool is_found = queries.first_hit(origin, direction, near, far, alone);
+            seen += is_found;
+            if (is_found != bool(found[k]) || queries.occluded(origin, direction, near, far) != bool(hidden[k]) ||
+                (is_found && (alone.triangle != hits[k].triangle || alone.ground != hits[k].ground))) {
+                ++apart; // within rounding of an edge
+                continue;
+            }
+            if (is_found) {
+                EXPECT_NEAR(hits[k].distance, alone.distance, 1e-5f);
+            }
+        }
+        EXPECT_LE(apart, count / 1000);
+        EXPECT_GE(seen, count / 3);
+    }
+}
+
+TEST(RayQueries, ManyRaysAtOnceInAnEmptyScene) {
+    const PatchScene scene;
+    const RayQueries queries(scene);
+    const std::vector<Ray> rays = camera_like_rays(20);
+    std::vector<RayHit> hits(20);
+    std::vector<std::uint8_t> found(20, 1), hidden(20, 1);
+    queries.first_hits(rays, hits, found);
+    queries.occluded(rays, hidden);
+    EXPECT_EQ(found, std::vector<std::uint8_t>(20, 0));
+    EXPECT_EQ(hidden, std::vector<std::uint8_t>(20, 0));
+}
+
 } // namespace
 } // namespace kokage
