@@ -7,6 +7,7 @@
 #include "common/services/work_report.h"
 #include "common/trace/ray_queries.h"
 #include "reflection/gloss.h"
+#include "reflection/relief/height_field.h"
 
 #include <memory>
 #include <optional>
@@ -19,6 +20,16 @@ struct Camera {
     float vertical_field_of_view = 0.6f; ///< radians
 };
 
+/// Relief below a surface, in the tile that its texture coordinates tell (relief/surface_relief.h): the mesh is its
+/// highest level. Camera rays meet it where it is near enough to be seen; all other rays meet the mesh.
+struct LookRelief {
+    std::shared_ptr<const HeightField> heights; ///< null: none; looks that share it share what is made of it
+    float depth_m = 0;                          ///< from its highest to its lowest level (depth 1)
+    /// The size of a tile that depth_m is meant for: where texture narrows along a branch, relief gets shallower as
+    /// well. 0: depth_m holds everywhere.
+    float tile_m = 0;
+};
+
 /// How a patch looks: its base colour texture varies the radiance that was solved for its mean colour.
 /// The radiance of a point = solved radiance x base_color x texture / mean_base_color, per channel.
 struct SurfaceLook {
@@ -28,6 +39,7 @@ struct SurfaceLook {
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     Gloss gloss;
     bool smooth_normals = false; ///< bark: light with the interpolated normal, and blend solved radiance across patches
+    LookRelief relief;           ///< of closed, opaque surfaces; needs texture coordinates and normals
 };
 
 /// A scene of patches with solved light as attributes. `reflection` knows nothing of trees or methods.

@@ -38,6 +38,11 @@ struct TreeMaterial {
     float roughness = 1.f;
     float diffuse_transmission = -1.f; ///< KHR_materials_diffuse_transmission factor; < 0 = not given
     glm::vec3 diffuse_transmission_color{1.f};
+    /// Bark's relief: 1 channel, 0 (the bottom of the deepest fissure) .. 1, in the base colour's texture coordinates;
+    /// null = even.
+    std::shared_ptr<const Image> height_texture;
+    float height_depth_m = 0; ///< how much higher 1 is than 0 ...
+    float height_tile_m = 0;  ///< ... where a tile of texture is this wide; 0 = everywhere
 };
 
 enum class TreePartKind { foliage, bark };

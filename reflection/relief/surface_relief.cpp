@@ -250,6 +250,7 @@ SurfaceRelief::Walk SurfaceRelief::from_hit(const SurfaceHit& hit, const glm::ve
     Walk w;
     w.prism = hit.triangle;
     w.direction = glm::dvec3(direction);
+    w.origin = glm::dvec3(hit.position);
     w.strength = double(hit.strength);
     if (!hit.found() || hit.thickness_m <= 0) { // the mesh itself hides what is behind it
         const bool is_behind = glm::dot(hit.geometric_normal, direction) <= 0;
@@ -293,6 +294,20 @@ void SurfaceRelief::occluded(std::span<const SurfaceHit> hits, std::span<const g
             hidden[i] = w.state == Walk::State::hit || w.state == Walk::State::stopped;
             ways_out[i] = float(w.s);
         }
+    }
+}
+
+void SurfaceRelief::trace_on(std::span<const SurfaceHit> from, std::span<const glm::vec3> directions,
+                             std::span<SurfaceHit> hits) const {
+    std::vector<Walk> walks;
+    for (std::size_t first = 0; first < from.size(); first += kBlock) {
+        const std::size_t end = std::min(from.size(), first + kBlock);
+        walks.clear();
+        for (std::size_t i = first; i < end; ++i)
+            walks.push_back(from_hit(from[i], directions[i]));
+        follow(walks);
+        for (std::size_t i = first; i < end; ++i)
+            hits[i] = hit_of(walks[i - first], SurfaceRay{from[i].position, directions[i], from[i].triangle, 0, 1});
     }
 }
 

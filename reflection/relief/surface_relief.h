@@ -67,6 +67,11 @@ class SurfaceRelief {
     void occluded(std::span<const SurfaceHit> hits, std::span<const glm::vec3> to_light, std::span<std::uint8_t> hidden,
                   std::span<float> ways_out) const;
 
+    /// What rays from hits of trace() meet next within the shell, as trace() tells it; `distance` and `way_out` count
+    /// from the hit. A hit on the mesh itself (thickness 0) stops what goes on behind it.
+    void trace_on(std::span<const SurfaceHit> from, std::span<const glm::vec3> directions,
+                  std::span<SurfaceHit> hits) const;
+
     const ReliefShell& shell() const { return shell_; }
 
   private:

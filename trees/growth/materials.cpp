@@ -68,6 +68,9 @@ TreeMaterial bark_material(const GrowthParameters& p, const BarkZone& zone) {
     if (p.textures) {
         const std::shared_ptr<const BarkImage> bark = drawn_bark(p.bark, zone.age);
         material.base_color_texture = std::shared_ptr<const Image>(bark, &bark->color);
+        material.height_texture = std::shared_ptr<const Image>(bark, &bark->height);
+        material.height_depth_m = bark->depth_m;
+        material.height_tile_m = float(p.bark_tile);
     } else {
         material.base_color = mean_bark_color(p.bark, zone.age);
     }
