@@ -74,8 +74,9 @@ glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direct
     const LobeSample drawn =
         sample_gloss(mirrored, at.roughness, multi_jittered(sample.index, sample.count, sample.pattern ^ kLobePattern));
     if (glm::dot(at.normal, drawn.direction) > 0) {
-        bool met = false;
-        const glm::vec3 seen = seen_along(at.point, drawn.direction, sample, scratch, met);
+        bool met = at.relief && at.relief->hides(drawn.direction);
+        const glm::vec3 seen = met ? surfaces_.solved_radiance(at) // bark opposite
+                                   : seen_along(at.point, drawn.direction, sample, scratch, met);
         light += drawn.weight * (met ? seen - lat_long_radiance(environment_.remainder, drawn.direction)
                                      : wide_lights_in(environment_, drawn.direction, at.roughness));
     }

@@ -45,13 +45,17 @@ PathIntegrator::PathIntegrator(const ShadedScene& scene, const RayQueries& queri
 }
 
 PathVertex PathIntegrator::surface_vertex(const SurfacePoint& at, const glm::vec3& direction) {
-    return {at.point,
-            at.geometric_normal,
-            at.normal,
-            at.optics,
-            at.gloss,
-            at.roughness,
-            glm::normalize(glm::reflect(direction, at.normal))};
+    PathVertex vertex{at.point,
+                      at.geometric_normal,
+                      at.normal,
+                      at.optics,
+                      at.gloss,
+                      at.roughness,
+                      glm::normalize(glm::reflect(direction, at.normal)),
+                      {}};
+    if (at.relief)
+        vertex.relief = *at.relief;
+    return vertex;
 }
 
 PathVertex PathIntegrator::ground_vertex(const glm::vec3& point, const glm::vec3& albedo) {
@@ -81,7 +85,7 @@ LightFromLights PathIntegrator::light(const PathVertex& vertex, PathNumbers& num
     glm::vec3 reflected(0.f);
     if (largest(vertex.gloss) > 0 && !(ray->distant && is_wide_for(*ray->distant, vertex.roughness)))
         reflected = lobe_of(vertex, ray->direction);
-    if (!(largest(scattered + reflected) > 0) ||
+    if (!(largest(scattered + reflected) > 0) || (vertex.relief && vertex.relief->hides(ray->direction)) ||
         queries_.occluded(start(vertex, ray->direction), ray->direction, 0, ray->distance))
         return {};
     return {scattered * ray->irradiance, reflected * ray->irradiance};
@@ -148,6 +152,10 @@ SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers
         if (!(numbers.independent() < survival))
             break;
         throughput /= survival;
+        if (CameraHit next; vertex.relief && vertex.relief->surfaces->meets(*vertex.relief, step.direction, next)) {
+            vertex = surface_vertex(points_.at(vertex.relief->hit.position, next), step.direction);
+            continue;
+        }
         const glm::vec3 origin = start(vertex, step.direction);
         RayHit hit;
         if (!queries_.first_hit(origin, step.direction, 0, INFINITY, hit)) {

@@ -6,6 +6,8 @@
 #include "reflection/surface_points.h"
 #include "reflection/surface_shading.h"
 
+#include <optional>
+
 namespace kokage {
 
 /// Where a path scatters.
@@ -16,6 +18,7 @@ struct PathVertex {
     glm::vec3 gloss{0.f}; ///< K towards where it is seen from
     float roughness = 1;
     glm::vec3 mirrored{0.f};
+    std::optional<ReliefPoint> relief; ///< that it lies on
 };
 
 /// Path tracing after Kajiya 1986 with light sampling. What a light sends through a lobe is found by sampling the light

@@ -5,6 +5,7 @@
 #include "reflection/camera_rays.h"
 #include "reflection/ground_look.h"
 #include "reflection/path_integrator.h"
+#include "reflection/relief_surfaces.h"
 #include "reflection/seen_by_ray.h"
 
 #include <algorithm>
@@ -21,13 +22,12 @@ struct TruthOfPicture {
     const GroundLook& ground;
     const PathIntegrator& paths;
 
-    SeenByRay seen(const glm::vec3& origin, const glm::vec3& direction, PathNumbers& numbers) const {
-        RayHit hit;
+    SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, PathNumbers& numbers) const {
+        const glm::vec3 direction = hit.direction;
         const float ground_distance = ground.distance(origin, direction);
-        const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
-        if (found && hit.distance <= ground_distance) {
-            const SurfacePoint at = paths.points().at(origin, direction, hit);
-            SeenByRay seen = SeenByRay::surface_at(at, hit.distance, queries.scene());
+        if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
+            const SurfacePoint at = paths.points().at(origin, hit);
+            SeenByRay seen = SeenByRay::surface_at(at, hit.hit.distance, queries.scene());
             const SurfaceRadiance light = paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers);
             seen.radiance = light.total();
             seen.direct = light.direct;
@@ -68,23 +68,26 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 
     Picture picture = empty_picture(options);
+    const ReliefSurfaces relief(scene, queries, frame, progress, picture.report);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("tracing paths", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 1, [&](std::size_t begin, std::size_t end) {
         progress.throw_if_stopped();
         PixelSum sum(frame, options.layers);
-        for (int y = int(begin); y < int(end); ++y)
+        for (int y = int(begin); y < int(end); ++y) {
+            RowHits hits(relief, frame, options, y);
             for (int x = 0; x < options.width; ++x) {
                 const PixelRays rays(frame, options, x, y);
                 const std::uint64_t seed = hash64(options.seed ^ hash64(rays.pixel()));
                 sum.clear();
+                const std::span<const CameraHit> of_pixel = hits.of_pixel(x);
                 for (std::uint32_t s = 0; s < samples; ++s) {
                     PathNumbers numbers(seed, s);
-                    const glm::vec3 direction = rays.direction(s);
-                    sum.add(truth.seen(frame.position, direction, numbers), direction);
+                    sum.add(truth.seen(frame.position, of_pixel[s], numbers), of_pixel[s].direction);
                 }
                 sum.store(picture, x, y);
             }
+        }
         progress.advance(end - begin);
     });
     return picture;

@@ -4,6 +4,7 @@
 #include "reflection/camera_rays.h"
 #include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
+#include "reflection/relief_surfaces.h"
 #include "reflection/seen_by_ray.h"
 #include "reflection/surface_shading.h"
 
@@ -24,14 +25,12 @@ struct Renderer {
     const GroundShading& ground_light;
     const GlossShading& gloss;
 
-    SeenByRay seen(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
-                   ShadingScratch& scratch) const {
-        RayHit hit;
+    SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, ShadingScratch& scratch) const {
+        const glm::vec3 direction = hit.direction;
         const float ground_distance = ground.distance(origin, direction);
-        const bool found = queries.first_hit(origin, direction, 0.f, kInfinity, hit) && !hit.ground;
-        if (found && hit.distance <= ground_distance) {
-            const SurfacePoint at = surfaces.point(origin, direction, hit);
-            SeenByRay seen = SeenByRay::surface_at(at, hit.distance, queries.scene());
+        if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
+            const SurfacePoint at = surfaces.point(origin, hit);
+            SeenByRay seen = SeenByRay::surface_at(at, hit.hit.distance, queries.scene());
             SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
             light.reflection += gloss.radiance(at, direction, sample, scratch);
             seen.radiance = light.total();
@@ -68,6 +67,7 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     Picture picture = empty_picture(options);
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
     const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, picture.report);
+    const ReliefSurfaces relief(scene, queries, frame, progress, picture.report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss};
 
     const auto samples = std::uint32_t(options.samples);
@@ -76,16 +76,17 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
         progress.throw_if_stopped();
         ShadingScratch scratch;
         PixelSum sum(frame, options.layers);
-        for (int y = int(begin); y < int(end); ++y)
+        for (int y = int(begin); y < int(end); ++y) {
+            RowHits hits(relief, frame, options, y);
             for (int x = 0; x < options.width; ++x) {
                 const PixelRays rays(frame, options, x, y);
                 sum.clear();
-                for (std::uint32_t s = 0; s < samples; ++s) {
-                    const glm::vec3 direction = rays.direction(s);
-                    sum.add(renderer.seen(frame.position, direction, rays.index(s), scratch), direction);
-                }
+                const std::span<const CameraHit> of_pixel = hits.of_pixel(x);
+                for (std::uint32_t s = 0; s < samples; ++s)
+                    sum.add(renderer.seen(frame.position, of_pixel[s], rays.index(s), scratch), of_pixel[s].direction);
                 sum.store(picture, x, y);
             }
+        }
         progress.advance(end - begin);
     });
     return picture;

@@ -72,7 +72,7 @@ const SurfaceLook* SurfacePoints::look_of(std::uint32_t triangle) const {
     return scene_.looks.empty() ? nullptr : &scene_.looks[scene_.triangle_look[triangle]];
 }
 
-SurfacePoint SurfacePoints::at(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const {
+SurfacePoint SurfacePoints::on_mesh(const glm::vec3& point, const RayHit& hit, bool front) const {
     const PatchScene& patches = *scene_.patches;
     const glm::uvec3 corners = patches.triangles[hit.triangle];
     const SurfaceLook* look = look_of(hit.triangle);
@@ -80,11 +80,11 @@ SurfacePoint SurfacePoints::at(const glm::vec3& origin, const glm::vec3& directi
     at.triangle = hit.triangle;
     at.patch = patches.triangle_patch[hit.triangle];
     at.weights = {1 - hit.barycentric.x - hit.barycentric.y, hit.barycentric};
-    at.front = glm::dot(direction, hit.geometric_normal) < 0;
+    at.front = front;
     at.smooth = look && look->smooth_normals;
     const float side = at.front ? 1.f : -1.f;
     at.normal = at.geometric_normal = side * hit.geometric_normal;
-    at.point = origin + hit.distance * direction;
+    at.point = point;
     if (at.smooth && !scene_.normals.empty()) {
         const glm::vec3 interpolated = at.weights.x * scene_.normals[corners.x] +
                                        at.weights.y * scene_.normals[corners.y] +
@@ -93,9 +93,38 @@ SurfacePoint SurfacePoints::at(const glm::vec3& origin, const glm::vec3& directi
             at.normal = side * interpolated / length;
         at.point = lifted(at.point, scene_, corners, at.weights, side);
     }
+    return at;
+}
+
+SurfacePoint SurfacePoints::at(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const {
+    SurfacePoint at = on_mesh(origin + hit.distance * direction, hit, glm::dot(direction, hit.geometric_normal) < 0);
+    dress(at, direction);
+    return at;
+}
+
+SurfacePoint SurfacePoints::at(const glm::vec3& origin, const CameraHit& hit) const {
+    if (!hit.is_relief)
+        return at(origin, hit.direction, hit.hit);
+    const PatchScene& patches = *scene_.patches;
+    const glm::uvec3 corners = patches.triangles[hit.hit.triangle];
+    const glm::vec3 weights = hit.relief.hit.weights;
+    SurfacePoint at = on_mesh(weights.x * patches.positions[corners.x] + weights.y * patches.positions[corners.y] +
+                                  weights.z * patches.positions[corners.z],
+                              hit.hit, true);
+    at.normal = hit.relief.hit.shading_normal;
+    at.relief = &hit.relief;
+    dress(at, hit.direction);
+    return at;
+}
+
+/// Colour and gloss.
+void SurfacePoints::dress(SurfacePoint& at, const glm::vec3& direction) const {
+    const PatchScene& patches = *scene_.patches;
+    const glm::uvec3 corners = patches.triangles[at.triangle];
+    const SurfaceLook* look = look_of(at.triangle);
     at.optics = patches.optics[patches.patches[at.patch].optics];
     if (!look)
-        return at;
+        return;
     const bool has_uvs = !patches.uvs.empty();
     const glm::vec2 uv = has_uvs ? coordinate(patches, corners, at.weights) : glm::vec2(0.f);
     if (look->base_color_texture && has_uvs) {
@@ -110,7 +139,6 @@ SurfacePoint SurfacePoints::at(const glm::vec3& origin, const glm::vec3& directi
         at.roughness = std::clamp(at.roughness, kLeastRoughness, 1.f);
         at.gloss = gloss_reflectance(look->gloss.normal_reflectance, at.roughness, -glm::dot(at.normal, direction));
     }
-    return at;
 }
 
 } // namespace kokage

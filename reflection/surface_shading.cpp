@@ -26,9 +26,30 @@ struct PositionHash {
 
 } // namespace
 
+namespace {
+
+/// Lights that relief hides.
+void leave_out_hidden(const ReliefPoint& relief, ShadingScratch& scratch) {
+    scratch.directions.clear();
+    for (const ShadowRay& ray : scratch.rays)
+        scratch.directions.push_back(ray.direction);
+    scratch.hidden.resize(scratch.rays.size());
+    relief.hides(scratch.directions, scratch.hidden);
+    std::size_t kept = 0;
+    for (std::size_t k = 0; k < scratch.rays.size(); ++k)
+        if (!scratch.hidden[k])
+            scratch.rays[kept++] = scratch.rays[k];
+    scratch.rays.resize(kept);
+}
+
+} // namespace
+
 LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
-                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch) {
+                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch,
+                                  const ReliefPoint* relief) {
     lights.rays_at(point, scattering, sample, scratch.rays, scratch.weights);
+    if (relief && !scratch.rays.empty())
+        leave_out_hidden(*relief, scratch);
     const float near = queries.ray_offset();
     LightFromLights sum;
     for (const ShadowRay& ray : scratch.rays)
@@ -102,16 +123,24 @@ glm::vec3 SurfaceShading::solved_radiance(const SurfacePoint& at) const {
     return at.texture * (at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch]);
 }
 
+/// The solution has the light of the mesh. Relief shows a part of its surroundings only to a point (openness); where
+/// it hides them it stands there itself, and sends what the solution says that bark sends there on the whole.
+glm::vec3 SurfaceShading::indirect_on_relief(const SurfacePoint& at) const {
+    const float open = at.relief->openness;
+    return open * at.texture * solved(at) + (1 - open) * at.optics.reflectance * scene_.radiance_front[at.patch];
+}
+
 SurfaceRadiance SurfaceShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
                                          ShadingScratch& scratch) const {
     SurfaceRadiance result;
-    result.indirect = at.texture * solved(at);
+    result.indirect = at.relief ? indirect_on_relief(at) : at.texture * solved(at);
     if (!pixel_shadows_)
         return result;
     const Scattering scattering{
         at.normal,   at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
         at.roughness};
-    const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
+    const LightFromLights lights =
+        light_from_lights(lights_, queries_, at.point, scattering, sample, scratch, at.relief);
     result.direct = lights.scattered;
     result.reflection = lights.reflected;
     return result;

@@ -14,6 +14,8 @@ namespace kokage {
 struct ShadingScratch {
     std::vector<ShadowRay> rays;
     std::vector<float> weights;
+    std::vector<glm::vec3> directions;
+    std::vector<std::uint8_t> hidden;
 };
 
 /// What lights send to a viewer by way of a surface.
@@ -21,9 +23,10 @@ struct LightFromLights {
     glm::vec3 scattered{0.f}, reflected{0.f}; ///< by the diffuse surface, and by its gloss
 };
 
-/// Traces the chosen lights' shadow rays and adds up what arrives.
+/// Traces the chosen lights' shadow rays and adds up what arrives. `relief`: that the point lies on; null: none.
 LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
-                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch);
+                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch,
+                                  const ReliefPoint* relief = nullptr);
 
 /// What a surface sends to a camera, in its parts.
 struct SurfaceRadiance {
@@ -41,6 +44,7 @@ class SurfaceShading {
     SurfacePoint point(const glm::vec3& origin, const glm::vec3& direction, const RayHit& hit) const {
         return points_.at(origin, direction, hit);
     }
+    SurfacePoint point(const glm::vec3& origin, const CameraHit& hit) const { return points_.at(origin, hit); }
     /// Towards where a ray of this direction came from; gloss shows split-off lights alone (gloss_shading.h has the
     /// rest).
     SurfaceRadiance radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
@@ -50,6 +54,7 @@ class SurfaceShading {
 
   private:
     glm::vec3 solved(const SurfacePoint& at) const;
+    glm::vec3 indirect_on_relief(const SurfacePoint& at) const;
     void smooth_solution();
 
     const ShadedScene& scene_;
