@@ -11,12 +11,12 @@ namespace kokage::test {
 /// Blue above, a dim ground's light below, and a low sun (irradiance `sun`; 0: none).
 inline Environment sky_over_dim_ground(float sun) {
     Environment environment;
-    environment.remainder = Image(64, 32, 3);
-    for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 64; ++x)
+    environment.remainder = Image(32, 16, 3);
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 32; ++x)
             for (int c = 0; c < 3; ++c)
                 environment.remainder.at(x, y)[c] =
-                    y < 16 ? 0.4f + 0.2f * float(c) + 0.02f * float(16 - y) : 0.14f - 0.02f * float(c);
+                    y < 8 ? 0.4f + 0.2f * float(c) + 0.04f * float(8 - y) : 0.14f - 0.02f * float(c);
     if (sun > 0)
         environment.distant_lights.push_back(
             disc_light({0.8f, 0.35f, 0.6f}, 0.005f, sun * glm::vec3(1.f, 0.9f, 0.75f)));
