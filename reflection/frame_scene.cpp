@@ -7,7 +7,6 @@
 namespace kokage {
 namespace {
 
-constexpr double kFieldOfView = 0.6; ///< vertical, radians: about a 35 mm lens on full frame
 /// How much of each half of the frame the scene fills: above, below (ground in front shows its shadow) and beside the
 /// middle.
 constexpr double kFillAbove = 0.88, kFillBelow = 0.70, kFillBeside = 0.88;
@@ -56,8 +55,8 @@ double balanced_pitch(const std::vector<glm::dvec3>& points, Stand stand) {
 
 /// Stands as near as the points allow. `points`: in the scene's units, relative to `foot`; `height`: of the highest.
 Camera stand_before(const std::vector<glm::dvec3>& points, double height, const glm::dvec3& foot, double size,
-                    float aspect, double azimuth) {
-    const double tangent = std::tan(kFieldOfView / 2);
+                    float aspect, double azimuth, double field_of_view) {
+    const double tangent = std::tan(field_of_view / 2);
     const double wide = tangent * (std::isfinite(aspect) && aspect > 0 ? double(aspect) : 1);
     // Low, wide things (a fern, a row of trees) are looked at from a little higher than a tree.
     const double eye = kEyeHeight * height + 0.15 * std::max(0.0, 0.7 - height);
@@ -80,33 +79,35 @@ Camera stand_before(const std::vector<glm::dvec3>& points, double height, const 
     Camera camera;
     camera.position = foot + size * stand.position;
     camera.target = foot + size * (stand.position + far * forward);
-    camera.vertical_field_of_view = float(kFieldOfView);
+    camera.vertical_field_of_view = float(field_of_view);
     return camera;
 }
 
-Camera frame_points(const std::vector<glm::vec3>& points, const Bounds& bounds, float aspect, double azimuth) {
+Camera frame_points(const std::vector<glm::vec3>& points, const Bounds& bounds, float aspect, double azimuth,
+                    double field_of_view) {
     const glm::dvec3 low(bounds.low), extent = glm::dvec3(bounds.high) - low;
     const double size = std::max({extent.x, extent.y, extent.z});
     if (!(size > 0) || !std::isfinite(size) || !std::isfinite(glm::dot(low, glm::dvec3(1.0))))
-        return frame_scene(Bounds{glm::vec3(-0.5f, 0.f, -0.5f), glm::vec3(0.5f, 1.f, 0.5f)}, aspect, float(azimuth));
+        return frame_scene(Bounds{glm::vec3(-0.5f, 0.f, -0.5f), glm::vec3(0.5f, 1.f, 0.5f)}, aspect, float(azimuth),
+                           float(field_of_view));
     const glm::dvec3 foot(low.x + 0.5 * extent.x, low.y, low.z + 0.5 * extent.z);
     std::vector<glm::dvec3> scaled;
     for (const glm::vec3& point : points)
         scaled.push_back((glm::dvec3(point) - foot) / size);
-    return stand_before(scaled, extent.y / size, foot, size, aspect, azimuth);
+    return stand_before(scaled, extent.y / size, foot, size, aspect, azimuth, field_of_view);
 }
 
 } // namespace
 
-Camera frame_scene(const Bounds& bounds, float aspect, float azimuth) {
+Camera frame_scene(const Bounds& bounds, float aspect, float azimuth, float field_of_view) {
     std::vector<glm::vec3> corners;
     for (unsigned k = 0; k < 8; ++k)
         corners.emplace_back(k & 1 ? bounds.high.x : bounds.low.x, k & 2 ? bounds.high.y : bounds.low.y,
                              k & 4 ? bounds.high.z : bounds.low.z);
-    return frame_points(corners, bounds, aspect, double(azimuth));
+    return frame_points(corners, bounds, aspect, double(azimuth), double(field_of_view));
 }
 
-Camera frame_scene(const PatchScene& scene, float aspect, float azimuth) {
+Camera frame_scene(const PatchScene& scene, float aspect, float azimuth, float field_of_view) {
     // The farthest corners in many directions stand for all: what is between them is inside their hull.
     const Bounds bounds = bounds_of(scene);
     std::vector<glm::vec3> support;
@@ -123,7 +124,7 @@ Camera frame_scene(const PatchScene& scene, float aspect, float azimuth) {
                     support.back() = p;
                 }
     }
-    return frame_points(support, bounds, aspect, double(azimuth));
+    return frame_points(support, bounds, aspect, double(azimuth), double(field_of_view));
 }
 
 float photographers_azimuth(const Environment& environment) {

@@ -20,6 +20,31 @@ float drawn_density(double falloff, double w) {
 
 } // namespace
 
+float RoughnessGradient::at(float height) const {
+    const float span = top_height - foot_height;
+    const float share = span > 0 ? std::clamp((height - foot_height) / span, 0.f, 1.f) : 0.f;
+    return foot + (top - foot) * share;
+}
+
+RoughnessRange roughness_range(const Gloss& gloss) {
+    RoughnessRange range{gloss.roughness, gloss.roughness, gloss.roughness};
+    if (const auto& gradient = gloss.roughness_gradient)
+        range = {std::min(gradient->foot, gradient->top), std::max(gradient->foot, gradient->top),
+                 0.5f * (gradient->foot + gradient->top)};
+    if (!gloss.roughness_texture || gloss.roughness_texture->empty())
+        return range;
+    const Image& texture = *gloss.roughness_texture;
+    float least = texture.pixels.front(), most = least;
+    double sum = 0;
+    for (std::size_t k = 0; k < texture.pixels.size(); k += std::size_t(texture.channels)) {
+        least = std::min(least, texture.pixels[k]);
+        most = std::max(most, texture.pixels[k]);
+        sum += double(texture.pixels[k]);
+    }
+    const double mean = sum / (double(texture.width) * texture.height);
+    return {range.least * least, range.most * most, float(double(range.mean) * mean)};
+}
+
 glm::vec3 gloss_reflectance(const glm::vec3& normal_reflectance, float roughness, float cosine) {
     const float away = 1 - std::clamp(cosine, 0.f, 1.f), fifth = away * away * away * away * away;
     return normal_reflectance + (grazing_reflectance(normal_reflectance, roughness) - normal_reflectance) * fifth;

@@ -10,8 +10,16 @@
 #include "common/types.h"
 
 #include <memory>
+#include <optional>
 
 namespace kokage {
+
+/// Roughness that changes linearly between two heights (+Y, metres), and stays beyond them.
+struct RoughnessGradient {
+    float foot_height = 0, top_height = 1;
+    float foot = 1, top = 1;
+    float at(float height) const;
+};
 
 struct Gloss {
     /// Reflectance at normal incidence; 0.04 for what is not a metal, a metal's colour. 0: matt.
@@ -19,9 +27,19 @@ struct Gloss {
     float roughness = 1; ///< glTF's, 0 … 1; smoother than kLeastRoughness counts as that
     /// 1 channel, times `roughness`; read as the base colour's texture is. Null: the same all over.
     std::shared_ptr<const Image> roughness_texture;
+    /// Times the texture, in place of `roughness`.
+    std::optional<RoughnessGradient> roughness_gradient;
+    /// The part of normal_reflectance that the base colour's texture colours: a metal's.
+    glm::vec3 tinted_reflectance{0.f};
 
     bool is_matt() const { return !(normal_reflectance.r > 0 || normal_reflectance.g > 0 || normal_reflectance.b > 0); }
 };
+
+/// The least and the most roughness of a gloss, and its mean, before kLeastRoughness.
+struct RoughnessRange {
+    float least = 1, most = 0, mean = 1;
+};
+RoughnessRange roughness_range(const Gloss& gloss);
 
 /// A mirror has no lobe.
 inline constexpr float kLeastRoughness = 0.02f;

@@ -11,28 +11,17 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kLobePattern = 0x9e3779b9u; ///< makes numbers of its own of a pixel's
 
-struct RoughnessRange {
-    float least = 1, most = 0;
-};
-
 /// Of all glossy looks; least > most where there is none.
 RoughnessRange roughness_of(const ShadedScene& scene) {
-    RoughnessRange range;
+    RoughnessRange all;
     for (const SurfaceLook& look : scene.looks) {
         if (look.gloss.is_matt())
             continue;
-        float least = 1, most = look.gloss.roughness_texture ? 0.f : 1.f;
-        if (look.gloss.roughness_texture) {
-            const Image& texture = *look.gloss.roughness_texture;
-            for (std::size_t k = 0; k < texture.pixels.size(); k += std::size_t(texture.channels)) {
-                least = std::min(least, texture.pixels[k]);
-                most = std::max(most, texture.pixels[k]);
-            }
-        }
-        range.least = std::min(range.least, least * look.gloss.roughness);
-        range.most = std::max(range.most, most * look.gloss.roughness);
+        const RoughnessRange range = roughness_range(look.gloss);
+        all.least = std::min(all.least, range.least);
+        all.most = std::max(all.most, range.most);
     }
-    return range;
+    return all;
 }
 
 } // namespace

@@ -76,10 +76,11 @@ struct PictureOptions {
 
 /// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's
 /// eyes beside a grown tree, some ground in front, air around. It stands at `azimuth` (radians from +Z towards +X) seen
-/// from the scene. Works at any size; a zero or non-finite box is taken as 1 m at the origin.
-Camera frame_scene(const PatchScene& scene, float aspect, float azimuth = 0.35f);
+/// from the scene. Works at any size; a zero or non-finite box is taken as 1 m at the origin. `field_of_view`:
+/// vertical, radians; 0.6 is about a 35 mm lens on full frame.
+Camera frame_scene(const PatchScene& scene, float aspect, float azimuth = 0.35f, float field_of_view = 0.6f);
 /// The same for a box, all of whose corners are shown.
-Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f);
+Camera frame_scene(const Bounds& bounds, float aspect, float azimuth = 0.35f, float field_of_view = 0.6f);
 
 /// Where a photographer would stand: the strongest light above the horizon comes from sixty degrees aside, so that the
 /// crown has a bright and a dark half and its shadow falls across the ground. 0.35 if there is no such light or it

@@ -133,11 +133,14 @@ void SurfacePoints::dress(SurfacePoint& at, const glm::vec3& direction) const {
         at.optics.transmittance *= at.texture;
     }
     if (!look->gloss.is_matt()) {
-        at.roughness = look->gloss.roughness;
+        at.roughness =
+            look->gloss.roughness_gradient ? look->gloss.roughness_gradient->at(at.point.y) : look->gloss.roughness;
         if (look->gloss.roughness_texture && has_uvs)
             at.roughness *= texture_value(*look->gloss.roughness_texture, uv, look->wrap_u, look->wrap_v);
         at.roughness = std::clamp(at.roughness, kLeastRoughness, 1.f);
-        at.gloss = gloss_reflectance(look->gloss.normal_reflectance, at.roughness, -glm::dot(at.normal, direction));
+        const glm::vec3 reflectance =
+            glm::min(look->gloss.normal_reflectance + (at.texture - 1.f) * look->gloss.tinted_reflectance, 1.f);
+        at.gloss = gloss_reflectance(reflectance, at.roughness, -glm::dot(at.normal, direction));
     }
 }
 

@@ -1,5 +1,5 @@
 #pragma once
-// A tree out of anybody's glTF. Private to trees.
+// A tree out of anybody's glTF. Private to trees, but for tree_material, which objects of scenes read, too.
 #include "common/gltf/gltf_scene.h"
 #include "trees/read_tree.h"
 

@@ -1,5 +1,5 @@
 #pragma once
-// Cuts a mesh into patches that each carry one radiance: leaves, or pieces of bark. Private to trees.
+// Cuts a mesh into patches that each carry one radiance: leaves, pieces of bark, or of a scene's objects.
 #include "common/types.h"
 
 #include <functional>

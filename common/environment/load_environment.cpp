@@ -86,6 +86,14 @@ std::string shape_warning(const Image& image, const std::string& name) {
            (image.width == image.height ? " (a mirror ball or an angular map has to be converted first)" : "");
 }
 
+/// Columns move to the left where the scene is turned from +Z towards +X: u = 0.5 + atan2(z, x)/2π falls.
+void turn(Image& image, double degrees) {
+    const double columns = std::remainder(degrees, 360.) / 360 * image.width;
+    const auto shift = (std::lround(columns) % image.width + image.width) % image.width;
+    for (int y = 0; y < image.height; ++y)
+        std::rotate(image.at(0, y), image.at(int(shift), y), image.at(0, y) + image.width * image.channels);
+}
+
 } // namespace
 
 void repair_pixels(Image& image, const std::string& name, bool strict, EnvironmentReport& report) {
@@ -167,6 +175,8 @@ Environment environment_from_image(Image image, const std::string& name, Environ
                  " columns");
         image = reduce_lat_long(std::move(image), loading.max_width);
     }
+    if (loading.turn_degrees != 0 && std::isfinite(loading.turn_degrees))
+        turn(image, loading.turn_degrees);
     report.energy_before = luminance_integral(image);
 
     Environment environment;

@@ -1,5 +1,6 @@
 #include "common/gltf/gltf_materials.h"
 
+#include "common/gltf/gltf_scene.h"
 #include "common/gltf/gltf_values.h"
 #include "common/scene/image_file.h"
 #include "common/services/error.h"
@@ -23,8 +24,9 @@ struct LostImage {
 
 class MaterialReader {
   public:
-    MaterialReader(const GltfDocument& document, std::vector<std::string>& notes)
-        : document_(document), notes_(notes), images_(document.image_count()) {}
+    MaterialReader(const GltfDocument& document, std::vector<std::string>& notes,
+                   PixelMeaning meaning = PixelMeaning::color)
+        : document_(document), notes_(notes), meaning_(meaning), images_(document.image_count()) {}
 
     SceneMaterial read(const tinygltf::Material& source, std::size_t index) {
         SceneMaterial material;
@@ -38,13 +40,16 @@ class MaterialReader {
         material.alpha_cutoff = glm::clamp(float(source.alphaCutoff), 0.f, 2.f);
         material.double_sided = source.doubleSided;
         material.unlit = extension(source, "KHR_materials_unlit") != nullptr;
-        material.roughness = glm::clamp(float(pbr.roughnessFactor), 0.f, 1.f);
+        material.roughness = factor(pbr.roughnessFactor, 0, 1);
+        if (const tinygltf::Value* ior = extension(source, "KHR_materials_ior"))
+            material.index_of_refraction = glm::clamp(number(member(*ior, "ior"), 1.5f), 0.f, 100.f);
         const tinygltf::Value* diffuse = extension(source, "KHR_materials_pbrSpecularGlossiness");
         if (diffuse) {
             material.base_color = color4(member(*diffuse, "diffuseFactor"), glm::vec4(1.f));
             if (diffuse->Has("diffuseTexture"))
                 read_color_texture(material, texture_info(member(*diffuse, "diffuseTexture")), place);
         } else {
+            material.metallic = factor(pbr.metallicFactor, 0, 1);
             for (std::size_t c = 0; c < 4 && c < pbr.baseColorFactor.size(); ++c)
                 material.base_color[c] = float(pbr.baseColorFactor[c]);
             if (pbr.baseColorTexture.index >= 0)
@@ -64,7 +69,26 @@ class MaterialReader {
         return material;
     }
 
+    /// Of a material that was read.
+    void read_gloss_texture(const tinygltf::Material& source, SceneMaterial& material, std::size_t index) {
+        const auto& info = source.pbrMetallicRoughness.metallicRoughnessTexture;
+        if (info.index < 0)
+            return;
+        const std::string place =
+            "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + shown_name(source.name) + "'");
+        try {
+            material.roughness_metallic_texture = texture({info.index, info.texCoord, info.extensions}, place);
+        } catch (const LostImage& lost) {
+            notes_.push_back(place + ": its texture of roughness and metal is " + lost.what +
+                             ": its factors alone were read");
+        }
+    }
+
   private:
+    static float factor(double value, double low, double high) {
+        return std::isfinite(value) ? float(std::clamp(value, low, high)) : float(high);
+    }
+
     struct TextureInfo {
         int index = -1, texture_coordinates = 0;
         tinygltf::ExtensionMap extensions;
@@ -213,6 +237,7 @@ class MaterialReader {
             throw LostImage{"in " + (format == "ktx2" ? std::string("KTX2 (BasisU)") : std::string("AVIF")) +
                             ", which can't be decoded"};
         ImageLoading loading;
+        loading.meaning = meaning_;
         loading.max_pixels = std::min(kMaximumPixelsOfOne, kMaximumPixels - pixels_);
         const Image image = load_image(std::as_bytes(bytes),
                                        document_.path() + ", image " + std::to_string(index) + " of " + place, loading);
@@ -222,6 +247,7 @@ class MaterialReader {
 
     const GltfDocument& document_;
     std::vector<std::string>& notes_;
+    PixelMeaning meaning_;
     std::vector<SceneTexture> images_;
     std::uint64_t pixels_ = 0;
 };
@@ -239,6 +265,15 @@ std::vector<SceneMaterial> read_gltf_materials(const GltfDocument& document, std
     materials.emplace_back().name = "default";
     materials.back().is_missing = true;
     return materials;
+}
+
+void read_gltf_gloss_textures(const GltfDocument& document, MeshScene& scene, Progress& progress) {
+    MaterialReader reader(document, scene.notes, PixelMeaning::data);
+    const auto& sources = document.model().materials;
+    for (std::size_t i = 0; i < std::min(sources.size(), scene.materials.size()); ++i) {
+        progress.throw_if_stopped();
+        reader.read_gloss_texture(sources[i], scene.materials[i], i);
+    }
 }
 
 } // namespace kokage

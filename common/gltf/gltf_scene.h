@@ -13,4 +13,8 @@ namespace kokage {
 MeshScene flatten(const GltfDocument& document, std::optional<glm::dvec3> origin = std::nullopt,
                   Progress& progress = silent_progress());
 
+/// Reads what flatten() leaves out: SceneMaterial::roughness_metallic_texture of the scene's materials. One in a format
+/// that can't be decoded is noted.
+void read_gltf_gloss_textures(const GltfDocument& document, MeshScene& scene, Progress& progress = silent_progress());
+
 } // namespace kokage

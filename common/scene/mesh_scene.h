@@ -38,7 +38,10 @@ struct SceneMaterial {
     float alpha_cutoff = 0.5f;
     bool double_sided = false;
     bool unlit = false;
-    float roughness = 1.f;
+    float roughness = 1.f, metallic = 0;
+    float index_of_refraction = 1.5f; ///< KHR_materials_ior; 0: a metal's mirror whatever the angle
+    /// Roughness in the second channel and metal in the third, times the factors; read where it is asked for.
+    std::optional<SceneTexture> roughness_metallic_texture;
     std::optional<float> diffuse_transmission; ///< KHR_materials_diffuse_transmission
     glm::vec3 diffuse_transmission_color{1.f};
     float transmission = 0; ///< KHR_materials_transmission: clear, not diffuse

@@ -19,11 +19,15 @@ struct AssembledScene {
     PatchOrigins origins;
     Environment environment;
     EnvironmentReport environment_report;
-    std::vector<SurfaceLook> looks;           ///< with gloss and relief
+    std::vector<SurfaceLook> looks;           ///< of each of the tree's parts, with gloss and relief
     std::vector<std::uint32_t> triangle_look; ///< per triangle of `patches`
+    float foot_height = 0;                    ///< of the lowest foot, where the ground is
     Camera camera;
     WorkReport report; ///< stages, counts, skips, warnings
 };
+
+/// What pictures are made of, still without light: for path tracing. `scene` must outlive it.
+ShadedScene unlit_scene(const AssembledScene& scene);
 
 /// Loads, grows, places, merges. Memory is estimated before it is taken (InputError says what to reduce). Throws
 /// InputError, Stopped.

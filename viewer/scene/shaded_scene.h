@@ -6,6 +6,9 @@
 
 namespace kokage {
 
+/// Of a part of the tree; `mean`: mean_base_color of its material.
+SurfaceLook look_of(const Tree& tree, const TreePart& part, const glm::vec3& mean);
+
 /// `patches` must outlive the result.
 ShadedScene shaded_scene(const Tree& tree, const PatchScene& patches, const PatchOrigins& origins,
                          const Solution& solution);

@@ -178,11 +178,13 @@ bool is_environment_image(const Surroundings& surroundings) {
     return !made_environment(surroundings);
 }
 
-Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report, bool split) {
+Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, EnvironmentReport& report, bool split,
+                               double turn_degrees) {
     std::optional<Environment> made = made_environment(s);
     EnvironmentLoading loading;
     loading.strict = s.strict;
     loading.split = split;
+    loading.turn_degrees = turn_degrees;
     if (!made)
         check_is_no_map(s.environment);
     Environment environment = made ? std::move(*made) : load_environment(s.environment, report, loading);
@@ -237,6 +239,10 @@ std::optional<std::string> night_warning(const Surroundings& s) {
 }
 
 std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& environment, const Tree& tree) {
+    return obtain_ground(s, environment, foot_height(tree));
+}
+
+std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& environment, float height_m) {
     const bool wanted = s.ground.value_or(!environment.has_lower_half || !s.ground_albedo.empty());
     if (!wanted)
         return {};
@@ -244,7 +250,7 @@ std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& en
     ground.albedo = kDryGrass;
     if (!s.ground_albedo.empty())
         ground.albedo = color_from(s.ground_albedo, "--ground-albedo");
-    ground.height_m = foot_height(tree);
+    ground.height_m = height_m;
     return ground;
 }
 

@@ -33,9 +33,10 @@ void check_surroundings(const Surroundings& surroundings);
 bool is_environment_image(const Surroundings& surroundings);
 
 /// Builds or loads it, lights added. Point lights are placed relative to `origin`
-/// (Tree::origin), as all positions of a tree are. `split`: lights are split off images.
+/// (Tree::origin), as all positions of a tree are. `split`: lights are split off images. `turn_degrees`: images are
+/// turned about +Y, from +Z towards +X (EnvironmentLoading).
 Environment obtain_environment(const Surroundings& surroundings, const glm::dvec3& origin, EnvironmentReport& report,
-                               bool split = true);
+                               bool split = true, double turn_degrees = 0);
 
 /// The height where the tree stands: where its trunk begins if that is known (bark may reach into the ground), else the
 /// lowest bark at the foot of its stems (twigs may hang lower), without wood its lowest point.
@@ -53,5 +54,7 @@ std::optional<std::string> night_warning(const Surroundings& surroundings);
 
 /// The ground that takes part in the transport, at the foot of the tree; empty if there is none.
 std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, const Tree& tree);
+/// The same at a height.
+std::optional<Ground> obtain_ground(const Surroundings& surroundings, const Environment& environment, float height_m);
 
 } // namespace kokage

@@ -1,0 +1,61 @@
+#include "viewer/scene/render_scene.h"
+#include "common/services/count_text.h"
+#include "foliage/method.h"
+#include "reflection/path_traced_picture.h"
+#include "viewer/scene/scene_memory.h"
+#include "viewer/scene/stage_clock.h"
+
+namespace kokage {
+namespace {
+
+/// The fast way: light is solved once for all patches, pixels read it.
+Picture render_solved(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, WorkReport& report,
+                      Progress& progress) {
+    check_memory(estimated_transport_bytes(double(scene.patches.patches.size()), options.error),
+                 "the light of " + count_text(scene.patches.patches.size()) + " patches at this error",
+                 "ask for a larger error, fewer trees, or fewer leaves");
+    ShadingOptions shading;
+    shading.error = options.error;
+    const std::unique_ptr<Transport> transport =
+        clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
+    progress.throw_if_stopped();
+    Solution solution = clock.run("solve", [&] { return transport->solve(scene.environment, progress); });
+    report.counts.insert(report.counts.end(), solution.report.counts.begin(), solution.report.counts.end());
+    report.skips.insert(report.skips.end(), solution.report.skips.begin(), solution.report.skips.end());
+    report.warnings.insert(report.warnings.end(), solution.report.warnings.begin(), solution.report.warnings.end());
+    if (solution.energy_in == 0 && !scene.patches.patches.empty())
+        report.warnings.push_back("no light reaches the scene, or all of it is black");
+    progress.throw_if_stopped();
+    return clock.run("render", [&] {
+        ShadedScene shaded = unlit_scene(scene);
+        shaded.indirect_front = std::move(solution.indirect.front);
+        shaded.indirect_back = std::move(solution.indirect.back);
+        shaded.radiance_front = std::move(solution.radiance.front);
+        shaded.radiance_back = std::move(solution.radiance.back);
+        const RayQueries queries(scene.patches);
+        return render_picture(shaded, queries, scene.environment, scene.camera, options.picture, progress);
+    });
+}
+
+Picture render_paths(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, Progress& progress) {
+    return clock.run("trace", [&] {
+        const ShadedScene shaded = unlit_scene(scene);
+        const RayQueries queries(scene.patches);
+        return render_path_traced(shaded, queries, scene.environment, scene.camera, options.picture, progress);
+    });
+}
+
+} // namespace
+
+RenderedScene render_scene(const AssembledScene& scene, const RenderOptions& options, Progress& progress) {
+    RenderedScene rendered;
+    StageClock clock;
+    rendered.picture = options.method == RenderMethod::fast
+                           ? render_solved(scene, options, clock, rendered.report, progress)
+                           : render_paths(scene, options, clock, progress);
+    rendered.report.stages = clock.stages();
+    rendered.report.append(rendered.picture.report);
+    return rendered;
+}
+
+} // namespace kokage
