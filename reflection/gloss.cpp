@@ -26,8 +26,8 @@ float RoughnessGradient::at(float height) const {
     return foot + (top - foot) * share;
 }
 
-RoughnessRange roughness_range(const Gloss& gloss) {
-    RoughnessRange range{gloss.roughness, gloss.roughness, gloss.roughness};
+RoughnessBounds roughness_bounds(const Gloss& gloss) {
+    RoughnessBounds range{gloss.roughness, gloss.roughness, gloss.roughness};
     if (const auto& gradient = gloss.roughness_gradient)
         range = {std::min(gradient->foot, gradient->top), std::max(gradient->foot, gradient->top),
                  0.5f * (gradient->foot + gradient->top)};

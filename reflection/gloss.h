@@ -36,10 +36,10 @@ struct Gloss {
 };
 
 /// The least and the most roughness of a gloss, and its mean, before kLeastRoughness.
-struct RoughnessRange {
+struct RoughnessBounds {
     float least = 1, most = 0, mean = 1;
 };
-RoughnessRange roughness_range(const Gloss& gloss);
+RoughnessBounds roughness_bounds(const Gloss& gloss);
 
 /// A mirror has no lobe.
 inline constexpr float kLeastRoughness = 0.02f;

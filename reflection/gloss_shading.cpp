@@ -12,12 +12,12 @@ constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kLobePattern = 0x9e3779b9u; ///< makes numbers of its own of a pixel's
 
 /// Of all glossy looks; least > most where there is none.
-RoughnessRange roughness_of(const ShadedScene& scene) {
-    RoughnessRange all;
+RoughnessBounds roughness_of(const ShadedScene& scene) {
+    RoughnessBounds all;
     for (const SurfaceLook& look : scene.looks) {
         if (look.gloss.is_matt())
             continue;
-        const RoughnessRange range = roughness_range(look.gloss);
+        const RoughnessBounds range = roughness_bounds(look.gloss);
         all.least = std::min(all.least, range.least);
         all.most = std::max(all.most, range.most);
     }
@@ -30,7 +30,7 @@ GlossShading::GlossShading(const ShadedScene& scene, const RayQueries& queries, 
                            const SurfaceShading& surfaces, const GroundLook& ground, const GroundShading& ground_light,
                            Progress& progress, WorkReport& report)
     : queries_(queries), environment_(environment), surfaces_(surfaces), ground_(ground), ground_light_(ground_light) {
-    const RoughnessRange range = roughness_of(scene);
+    const RoughnessBounds range = roughness_of(scene);
     if (range.least > range.most) {
         report.skips.push_back({"reflection map", "nothing glossy is in the scene", "one bake of the surroundings"});
         return;

@@ -83,7 +83,7 @@ Gloss gloss_of(const SceneSurface& surface, const glm::vec3& mean_base_color, fl
 glm::vec3 diffuse_share(const SceneSurface& surface, const Gloss& gloss) {
     if (gloss.is_matt())
         return glm::vec3(1 - surface.finish.metallic);
-    const float roughness = std::clamp(roughness_range(gloss).mean, kLeastRoughness, 1.f);
+    const float roughness = std::clamp(roughness_bounds(gloss).mean, kLeastRoughness, 1.f);
     return (1 - surface.finish.metallic) *
            (1.f - glm::min(mean_gloss_reflectance(gloss.normal_reflectance, roughness), 1.f));
 }
