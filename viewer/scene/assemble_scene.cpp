@@ -3,6 +3,7 @@
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "trees/merge_trees.h"
+#include "viewer/scene/material_relief.h"
 #include "viewer/scene/object_tree.h"
 #include "viewer/scene/scene_materials.h"
 #include "viewer/scene/scene_memory.h"
@@ -351,15 +352,33 @@ class SceneAssembly {
         scene_.triangle_look = scene_.origins.triangle_part;
         std::vector<Gloss> glosses;
         std::vector<glm::vec3> means;
+        std::vector<LookRelief> reliefs;
+        MaterialReliefs heights;
         for (std::uint32_t m = 0; m < surfaces_.size(); ++m) {
             means.push_back(mean_base_color(scene_.tree, m, kind_of(m)));
             glosses.push_back(gloss_of(surfaces_[m], means[m], heights_[m].first, heights_[m].second));
+            reliefs.push_back(relief_of(surfaces_[m], kind_of(m), heights));
         }
         for (const TreePart& part : scene_.tree.parts) {
             scene_.looks.push_back(look_of(scene_.tree, part, means[part.material]));
             scene_.looks.back().gloss = glosses[part.material];
+            if (!part.uvs.empty())
+                scene_.looks.back().relief = reliefs[part.material];
         }
         take_gloss_off(glosses);
+    }
+
+    LookRelief relief_of(const SceneSurface& surface, TreePartKind kind, MaterialReliefs& heights) {
+        if (kind == TreePartKind::foliage)
+            return {};
+        const Finish& finish = surface.finish;
+        // A tree's bark has heights of its own where it is thick, and its twigs none.
+        const bool own = !finish.relief || (finish.relief->heights.empty() && finish.relief->normals.empty() &&
+                                            !surface.material.height_texture);
+        return told_at("", [&] {
+            return !own ? heights.described(*finish.relief, surface.material, finish.pointer, scene_.report)
+                        : heights.own(surface.material);
+        });
     }
 
     /// Materials are not shared between foliage and bark here.

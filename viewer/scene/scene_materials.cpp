@@ -62,6 +62,7 @@ SceneSurface changed_surface(SceneSurface surface, const MaterialDescription& de
         finish.index_of_refraction = float(*description.index_of_refraction);
     if (description.relief)
         finish.relief = description.relief;
+    finish.pointer = description.pointer;
     return surface;
 }
 

@@ -14,7 +14,8 @@ struct Finish {
     std::optional<glm::dvec2> roughness_from_foot_to_top;
     float metallic = 0;
     float index_of_refraction = 1.5f;        ///< 1: matt
-    std::optional<ReliefDescription> relief; ///< empty: none is asked for
+    std::optional<ReliefDescription> relief; ///< empty: the material's own
+    std::string pointer;                     ///< where what changed it stands in the scene file, for messages
 };
 
 struct SceneSurface {
