@@ -55,6 +55,13 @@ glm::vec3 PixelRays::direction(std::uint32_t sample) const {
     return frame_.direction(x_ + 0.5f + pixel_filter_offset(u.x), y_ + 0.5f + pixel_filter_offset(u.y));
 }
 
+SquareRays::SquareRays(const CameraFrame& frame, const PictureOptions& options, int x, int y)
+    : frame_(frame), x_(float(x)), y_(float(y)) {
+    const std::uint64_t square = std::uint64_t(y + 1) * std::uint64_t(options.width + 2) + std::uint64_t(x + 1);
+    film_seed_ = hash64(hash64(options.seed ^ hash64(3)) + square);
+    light_pattern_ = pattern_of(options.seed, square, 4);
+}
+
 glm::dvec3 displayable(const glm::vec3& radiance) {
     glm::dvec3 result(0.);
     for (std::size_t c = 0; c < 3; ++c)

@@ -1,5 +1,6 @@
 #pragma once
 // A picture's rays: where they start and where they go. Private to reflection.
+#include "common/trace/path_numbers.h"
 #include "reflection/light_choice.h"
 #include "reflection/picture.h"
 
@@ -35,6 +36,27 @@ class PixelRays {
     float x_, y_;
     std::uint64_t pixel_;
     std::uint32_t samples_, film_pattern_, light_pattern_;
+};
+
+/// Rays of one square of the picture, spread evenly over it. Any number of them in a row, from any on, is.
+class SquareRays {
+  public:
+    /// x, y may lie outside of the picture.
+    SquareRays(const CameraFrame& frame, const PictureOptions& options, int x, int y);
+
+    /// From the square's upper left corner.
+    glm::vec2 place(std::uint32_t sample) const { return PathNumbers(film_seed_, sample).pair(); }
+    glm::vec3 direction(const glm::vec2& place) const { return frame_.direction(x_ + place.x, y_ + place.y); }
+    /// For what is stratified over the rays from `begin` to `end`.
+    SampleIndex index(std::uint32_t sample, std::uint32_t begin, std::uint32_t end) const {
+        return {sample - begin, end - begin, light_pattern_ ^ begin * 0x9e3779b9u};
+    }
+
+  private:
+    const CameraFrame& frame_;
+    float x_, y_;
+    std::uint64_t film_seed_;
+    std::uint32_t light_pattern_;
 };
 
 /// What overflowed on the way is as bright as a picture can hold; never NaN. (A single ray's share of a pixel may be

@@ -65,7 +65,7 @@ enum class PictureGround {
 
 struct PictureOptions {
     int width = 1280, height = 960;
-    int samples = 16;      ///< camera rays a pixel
+    int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
     int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
     std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
     bool pixel_shadows = true;

@@ -105,16 +105,35 @@ CameraHit ReliefSurfaces::met(const SurfaceHit& hit, const glm::vec3& direction)
     return result;
 }
 
+void ReliefSurfaces::first_hits_of_meshes(std::span<CameraHit> hits) const {
+    constexpr std::size_t kAtOnce = 64;
+    std::array<Ray, kAtOnce> rays;
+    std::array<RayHit, kAtOnce> met;
+    std::array<std::uint8_t, kAtOnce> found;
+    for (std::size_t first = 0; first < hits.size(); first += kAtOnce) {
+        const std::size_t count = std::min(kAtOnce, hits.size() - first);
+        for (std::size_t k = 0; k < count; ++k)
+            rays[k] = {eye_, hits[first + k].direction, 0.f, kInfinity};
+        queries_.first_hits(std::span(rays).first(count), std::span(met).first(count), std::span(found).first(count));
+        for (std::size_t k = 0; k < count; ++k) {
+            hits[first + k].is_relief = false;
+            hits[first + k].found = found[k] != 0;
+            hits[first + k].hit = met[k];
+        }
+    }
+}
+
 void ReliefSurfaces::first_hits(std::span<CameraHit> hits) const {
+    if (!relief_)
+        return first_hits_of_meshes(hits);
     std::vector<std::size_t> entering;
     std::vector<SurfaceRay> rays;
     std::vector<Entry> entries;
     for (std::size_t i = 0; i < hits.size(); ++i) {
         CameraHit& hit = hits[i];
         hit.is_relief = false;
-        if (Entry entry; !relief_) {
-            hit.found = queries_.first_hit(eye_, hit.direction, 0.f, kInfinity, hit.hit);
-        } else if (hit.found = false; next_entry(hit, entry, 0, kInfinity)) {
+        hit.found = false;
+        if (Entry entry; next_entry(hit, entry, 0, kInfinity)) {
             entering.push_back(i);
             entries.push_back(entry);
             rays.push_back({eye_, hit.direction, 0, 0, 1});

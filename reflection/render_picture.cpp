@@ -5,10 +5,11 @@
 #include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
 #include "reflection/relief_surfaces.h"
-#include "reflection/seen_by_ray.h"
+#include "reflection/sample_plan.h"
 #include "reflection/surface_shading.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace kokage {
@@ -24,6 +25,8 @@ struct Renderer {
     const GroundLook& ground;
     const GroundShading& ground_light;
     const GlossShading& gloss;
+
+    const ReliefSurfaces& relief;
 
     SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, ShadingScratch& scratch) const {
         const glm::vec3 direction = hit.direction;
@@ -50,6 +53,142 @@ struct Renderer {
     }
 };
 
+/// Draws squares of the picture: first rays, and as many more as the plan gives.
+class PictureDrawing {
+  public:
+    PictureDrawing(const Renderer& renderer, const CameraFrame& frame, const PictureOptions& options)
+        : renderer_(renderer), frame_(frame), options_(options), first_(SamplePlan::first_samples(options.samples)) {}
+
+    Picture draw(Progress& progress) const {
+        Film film(options_, frame_);
+        const SamplePlan plan(scattered_spreads(), options_.samples, first_);
+        progress.begin("rendering the picture", std::size_t(film.band_count()));
+        parallel_blocks(std::size_t(film.band_count()), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t band = begin; band < end; ++band) {
+                progress.throw_if_stopped();
+                draw_band(film, int(band), plan);
+                progress.advance(1);
+            }
+        });
+        return film.picture();
+    }
+
+  private:
+    /// Rays of a square's sequence that are to be traced.
+    struct Square {
+        int x, y;
+        std::uint32_t begin, end;
+    };
+
+    /// Adds what the rays of `squares` see to `samples`, in their order. Rays of one call for a square are spread
+    /// evenly over lights and lobes.
+    void trace(const std::vector<Square>& squares, ShadingScratch& scratch, std::vector<CameraSample>& samples) const {
+        constexpr std::size_t kAtOnce = 512;
+        std::vector<CameraHit> hits;
+        for (std::size_t first = 0, last = 0; first < squares.size(); first = last) {
+            hits.clear();
+            const std::size_t before = samples.size();
+            for (; last < squares.size() && hits.size() < kAtOnce; ++last) {
+                const Square& square = squares[last];
+                const SquareRays rays(frame_, options_, square.x, square.y);
+                for (std::uint32_t s = square.begin; s < square.end; ++s) {
+                    CameraSample& sample = samples.emplace_back();
+                    sample.place = rays.place(s);
+                    sample.direction = rays.direction(sample.place);
+                    hits.emplace_back().direction = sample.direction;
+                }
+            }
+            renderer_.relief.first_hits(hits);
+            std::size_t k = 0;
+            for (std::size_t i = first; i < last; ++i) {
+                const Square& square = squares[i];
+                const SquareRays rays(frame_, options_, square.x, square.y);
+                for (std::uint32_t s = square.begin; s < square.end; ++s, ++k)
+                    samples[before + k].seen =
+                        renderer_.seen(frame_.position, hits[k], rays.index(s, square.begin, square.end), scratch);
+            }
+        }
+    }
+
+    /// Of squares here and there, so that the plan knows what the picture is like.
+    std::vector<double> scattered_spreads() const {
+        constexpr int kStep = 5;
+        if (first_ >= options_.samples)
+            return {};
+        const int rows = (options_.height + kStep - 1) / kStep, columns = (options_.width + kStep - 1) / kStep;
+        std::vector<double> spreads(std::size_t(rows) * std::size_t(columns));
+        parallel_blocks(std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
+            ShadingScratch scratch;
+            std::vector<CameraSample> samples;
+            std::vector<Square> squares;
+            for (std::size_t row = begin; row < end; ++row) {
+                samples.clear();
+                squares.clear();
+                // Every row begins elsewhere, so that upright edges are not met or missed all together.
+                for (int column = 0; column < columns; ++column)
+                    squares.push_back({std::min(options_.width - 1, column * kStep + int(2 * row) % kStep),
+                                       int(row) * kStep, 0, std::uint32_t(first_)});
+                trace(squares, scratch, samples);
+                for (std::size_t column = 0; column < squares.size(); ++column)
+                    spreads[row * squares.size() + column] =
+                        spread_of(samples.data() + column * std::size_t(first_), std::size_t(first_));
+            }
+        });
+        return spreads;
+    }
+
+    void draw_band(Film& film, int band, const SamplePlan& plan) const {
+        const int columns = options_.width + 2, first_row = film.first_row(band), rows = film.end_row(band) - first_row;
+        const auto first = std::size_t(first_);
+        ShadingScratch scratch;
+        std::vector<Square> squares;
+        for (int row = 0; row < rows; ++row)
+            for (int x = 0; x < columns; ++x)
+                squares.push_back({x - 1, first_row + row, 0, std::uint32_t(first_)});
+        std::vector<CameraSample> begun, more, samples;
+        begun.reserve(squares.size() * first);
+        trace(squares, scratch, begun);
+        std::vector<double> spreads;
+        for (std::size_t k = 0; k < squares.size(); ++k)
+            spreads.push_back(spread_of(begun.data() + k * first, first));
+        for (int row = 0; row < rows; ++row) {
+            std::vector<Square> rest;
+            for (int x = 0; x < columns; ++x)
+                rest.push_back({x - 1, first_row + row, std::uint32_t(first_),
+                                std::uint32_t(plan.count(spread_around(spreads, rows, columns, row, x)))});
+            more.clear();
+            trace(rest, scratch, more);
+            auto next = more.begin();
+            for (int x = 0; x < columns; ++x) {
+                const auto from = begun.begin() + std::ptrdiff_t(first) * (row * columns + x);
+                samples.assign(from, from + std::ptrdiff_t(first));
+                const Square& square = rest[std::size_t(x)];
+                const auto end = next + std::ptrdiff_t(square.end - square.begin);
+                samples.insert(samples.end(), next, end);
+                next = end;
+                film.add(band, square.x, square.y, samples);
+            }
+        }
+    }
+
+    /// Root of the mean variance of a square and its neighbours in the band: few rays often miss what is narrow.
+    static double spread_around(const std::vector<double>& spreads, int rows, int columns, int row, int x) {
+        double sum = 0;
+        int count = 0;
+        for (int j = std::max(0, row - 1); j <= std::min(rows - 1, row + 1); ++j)
+            for (int i = std::max(0, x - 1); i <= std::min(columns - 1, x + 1); ++i, ++count) {
+                const double spread = spreads[std::size_t(j) * std::size_t(columns) + std::size_t(i)];
+                sum += spread * spread;
+            }
+        return std::sqrt(sum / count);
+    }
+
+    const Renderer& renderer_;
+    const CameraFrame& frame_;
+    const PictureOptions& options_;
+    int first_;
+};
+
 } // namespace
 
 Picture render_picture(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
@@ -64,31 +203,14 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const LightChoice lights(environment, options.light_samples);
     const SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
     const GroundLook ground(scene, environment, backdrop, camera, options);
-    Picture picture = empty_picture(options);
+    WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, picture.report);
-    const ReliefSurfaces relief(scene, queries, frame, progress, picture.report);
-    const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss};
+    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, report);
+    const ReliefSurfaces relief(scene, queries, frame, progress, report);
+    const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss, relief};
 
-    const auto samples = std::uint32_t(options.samples);
-    progress.begin("rendering the picture", std::size_t(options.height));
-    parallel_blocks(std::size_t(options.height), 2, [&](std::size_t begin, std::size_t end) {
-        progress.throw_if_stopped();
-        ShadingScratch scratch;
-        PixelSum sum(frame, options.layers);
-        for (int y = int(begin); y < int(end); ++y) {
-            RowHits hits(relief, frame, options, y);
-            for (int x = 0; x < options.width; ++x) {
-                const PixelRays rays(frame, options, x, y);
-                sum.clear();
-                const std::span<const CameraHit> of_pixel = hits.of_pixel(x);
-                for (std::uint32_t s = 0; s < samples; ++s)
-                    sum.add(renderer.seen(frame.position, of_pixel[s], rays.index(s), scratch), of_pixel[s].direction);
-                sum.store(picture, x, y);
-            }
-        }
-        progress.advance(end - begin);
-    });
+    Picture picture = PictureDrawing(renderer, frame, options).draw(progress);
+    picture.report = report;
     return picture;
 }
 

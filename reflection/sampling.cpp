@@ -120,6 +120,26 @@ float pixel_filter_offset(float u) {
     return (1 - fraction) * table[step] + fraction * table[step + 1];
 }
 
+float pixel_filter(float offset) {
+    constexpr int kSteps = 512;
+    static const std::array<float, kSteps + 2> table = [] {
+        std::array<float, kSteps + 2> values{};
+        for (int i = 0; i <= kSteps; ++i) {
+            const double turn = kPiDouble * (1 + double(i) / kSteps); // from the middle of the window to its end
+            values[std::size_t(i)] = float(
+                (0.35875 - 0.48829 * std::cos(turn) + 0.14128 * std::cos(2 * turn) - 0.01168 * std::cos(3 * turn)) /
+                (0.35875 * 2 * kFilterRadius));
+        }
+        return values;
+    }();
+    const float place = std::abs(offset) * float(kSteps / kFilterRadius);
+    if (!(place < kSteps))
+        return 0;
+    const auto step = std::size_t(place);
+    const float fraction = place - float(step);
+    return (1 - fraction) * table[step] + fraction * table[step + 1];
+}
+
 glm::vec4 cubic_b_spline(float t) {
     const float s = 1 - t;
     return glm::vec4(s * s * s, 3 * t * t * t - 6 * t * t + 4, 3 * s * s * s - 6 * s * s + 4, t * t * t) / 6.f;

@@ -21,6 +21,9 @@ glm::vec3 cosine_direction(glm::vec2 u);
 /// Ernst et al. 2006).
 float pixel_filter_offset(float u);
 
+/// That window, at an offset in pixels; its integral is 1.
+float pixel_filter(float offset);
+
 /// Weights of the four nodes round a place at fraction t between the second and the third: the uniform cubic B-spline.
 /// It is smooth, never negative, and sums to 1.
 glm::vec4 cubic_b_spline(float t);

@@ -10,22 +10,6 @@ void write(Image& image, int x, int y, const glm::dvec3& sum, std::uint32_t coun
         image.at(x, y)[c] = float(sum[c] / count);
 }
 
-/// The most frequent; of equals the smallest.
-std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
-    std::sort(values.begin(), values.end());
-    std::uint32_t best = 0;
-    std::size_t most = 0;
-    for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
-        while (end < values.size() && values[end] == values[begin])
-            ++end;
-        if (end - begin > most) {
-            most = end - begin;
-            best = values[begin];
-        }
-    }
-    return best;
-}
-
 } // namespace
 
 SeenByRay SeenByRay::surface_at(const SurfacePoint& at, float distance, const PatchScene& patches) {
@@ -61,6 +45,21 @@ Picture empty_picture(const PictureOptions& options) {
     if (options.layers)
         picture.layers = PictureLayers{image(3), image(3), image(1), image(3), image(3), image(3), image(1)};
     return picture;
+}
+
+std::uint32_t most_frequent(std::vector<std::uint32_t>& values) {
+    std::sort(values.begin(), values.end());
+    std::uint32_t best = 0;
+    std::size_t most = 0;
+    for (std::size_t begin = 0, end = 0; begin < values.size(); begin = end) {
+        while (end < values.size() && values[end] == values[begin])
+            ++end;
+        if (end - begin > most) {
+            most = end - begin;
+            best = values[begin];
+        }
+    }
+    return best;
 }
 
 void PixelSum::clear() {

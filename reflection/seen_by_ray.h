@@ -25,6 +25,9 @@ struct SeenByRay {
 /// An empty picture of a size, with the layers that the options ask for.
 Picture empty_picture(const PictureOptions& options);
 
+/// Of equals the smallest; sorts them.
+std::uint32_t most_frequent(std::vector<std::uint32_t>& values);
+
 /// Adds up one pixel's rays; reused for the next pixel. One thread's.
 class PixelSum {
   public:

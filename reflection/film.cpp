@@ -1,0 +1,133 @@
+#include "reflection/film.h"
+#include "reflection/sampling.h"
+
+#include <algorithm>
+#include <array>
+
+namespace kokage {
+namespace {
+
+constexpr std::size_t kPlain = 5, kWithLayers = 17; ///< weight, subject, radiance; direct, indirect, reflection, albedo
+
+/// Of the pixel before, its own and the pixel behind.
+glm::vec3 filter_weights(float place) {
+    return {pixel_filter(place + 0.5f), pixel_filter(place - 0.5f), pixel_filter(place - 1.5f)};
+}
+
+/// The most frequent; of equals the smallest.
+std::uint32_t most_frequent_leaf(const std::vector<CameraSample>& samples) {
+    std::vector<std::uint32_t> leaves;
+    for (const CameraSample& sample : samples)
+        leaves.push_back(sample.seen.leaf);
+    return most_frequent(leaves);
+}
+
+} // namespace
+
+Film::Film(const PictureOptions& options, const CameraFrame& frame)
+    : width_(options.width), height_(options.height), channels_(options.layers ? kWithLayers : kPlain),
+      options_(options), frame_(frame) {
+    bands_.resize(std::size_t((height_ + 2 + kBandRows - 1) / kBandRows));
+}
+
+int Film::end_row(int band) const {
+    return std::min(first_row(band) + kBandRows, height_ + 1);
+}
+
+/// `row` from 0: the row above the band's first.
+float* Film::sum(Band& band, int x, int row) const {
+    return band.sums.data() + (std::size_t(row) * std::size_t(width_) + std::size_t(x)) * channels_;
+}
+
+void Film::add_to_neighbours(Band& band, int x, int row, const CameraSample& sample, float weight) const {
+    const SeenByRay& seen = sample.seen;
+    std::array<float, kWithLayers> values{};
+    values[0] = 1;
+    values[1] = seen.surface ? 1.f : 0.f;
+    const auto put = [&](std::size_t at, const glm::vec3& rgb) {
+        for (std::size_t c = 0; c < 3; ++c)
+            values[at + c] = float(displayable(rgb)[c]);
+    };
+    put(2, seen.radiance);
+    if (channels_ == kWithLayers) {
+        put(5, seen.direct);
+        put(8, seen.indirect);
+        put(11, seen.reflection);
+        put(14, seen.albedo);
+    }
+    const glm::vec3 across = weight * filter_weights(sample.place.x), down = filter_weights(sample.place.y);
+    for (int j = 0; j < 3; ++j)
+        for (int i = std::max(0, 1 - x); i < 3 && x + i - 1 < width_; ++i) {
+            const float share = across[std::size_t(i)] * down[std::size_t(j)];
+            float* to = sum(band, x + i - 1, row + j);
+            for (std::size_t k = 0; k < channels_; ++k)
+                to[k] += share * values[k];
+        }
+}
+
+void Film::add(int band, int x, int y, const std::vector<CameraSample>& samples) {
+    Band& sums = bands_[std::size_t(band)];
+    const int rows = end_row(band) - first_row(band);
+    if (sums.sums.empty())
+        sums.sums.assign(std::size_t(rows + 2) * std::size_t(width_) * channels_, 0.f);
+    const float weight = 1 / float(samples.size());
+    for (const CameraSample& sample : samples)
+        add_to_neighbours(sums, x, y - first_row(band), sample, weight);
+    if (channels_ != kWithLayers || x < 0 || x >= width_)
+        return;
+    if (sums.nearest.empty())
+        sums.nearest.resize(std::size_t(rows) * std::size_t(width_));
+    Nearest& nearest = sums.nearest[std::size_t(y - first_row(band)) * std::size_t(width_) + std::size_t(x)];
+    for (const CameraSample& sample : samples)
+        if (const float depth = sample.seen.distance * glm::dot(sample.direction, frame_.forward);
+            depth < nearest.depth) {
+            nearest.depth = depth;
+            nearest.normal = sample.seen.normal;
+        }
+    nearest.leaf = most_frequent_leaf(samples);
+}
+
+void Film::store(Picture& picture, int x, int y) const {
+    std::array<double, kWithLayers> total{};
+    const int own = (y + 1) / kBandRows;
+    for (int band = std::max(0, own - 1); band <= own + 1 && band < band_count(); ++band) {
+        const int row = y - first_row(band) + 1; // of its sums
+        if (row < 0 || row >= end_row(band) - first_row(band) + 2)
+            continue;
+        const float* from = bands_[std::size_t(band)].sums.data() +
+                            (std::size_t(row) * std::size_t(width_) + std::size_t(x)) * channels_;
+        for (std::size_t k = 0; k < channels_; ++k)
+            total[k] += double(from[k]);
+    }
+    const auto mean = [&](Image& image, std::size_t at, bool positive = false) {
+        for (std::size_t c = 0; c < std::size_t(image.channels); ++c) {
+            const double value = total[at + c] / total[0];
+            image.at(x, y)[c] = float(positive ? std::max(0., value) : value);
+        }
+    };
+    mean(picture.radiance, 2, true);
+    mean(picture.subject, 1);
+    if (!picture.layers)
+        return;
+    PictureLayers& layers = *picture.layers;
+    mean(layers.direct, 5);
+    mean(layers.indirect, 8);
+    mean(layers.reflection, 11);
+    mean(layers.albedo, 14);
+    const Nearest& nearest =
+        bands_[std::size_t(own)].nearest[std::size_t(y - first_row(own)) * std::size_t(width_) + std::size_t(x)];
+    layers.depth.at(x, y)[0] = nearest.depth;
+    layers.leaf.at(x, y)[0] = float(nearest.leaf);
+    for (std::size_t c = 0; c < 3; ++c)
+        layers.normal.at(x, y)[c] = nearest.normal[c];
+}
+
+Picture Film::picture() const {
+    Picture picture = empty_picture(options_);
+    for (int y = 0; y < height_; ++y)
+        for (int x = 0; x < width_; ++x)
+            store(picture, x, y);
+    return picture;
+}
+
+} // namespace kokage
