@@ -30,7 +30,7 @@ SamplePlan::SamplePlan(const std::vector<double>& spreads, int samples, int firs
         const double middle = 0.5 * (low + high);
         (mean_count(std::exp(middle)) < samples ? low : high) = middle;
     }
-    scale_ = std::exp(low);
+    scale_ = std::exp(high);
 }
 
 int SamplePlan::first_samples(int samples) {
