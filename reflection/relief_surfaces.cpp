@@ -35,10 +35,13 @@ struct ReliefSurfaces::Entry {
     bool passed = false; ///< an outside was reached before
 };
 
-ReliefSurfaces::ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const CameraFrame& frame,
-                               Progress& progress, WorkReport& report)
+ReliefSurfaces::ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                               const CameraFrame& frame, Progress& progress, WorkReport& report)
     : scene_(scene), queries_(queries), eye_(frame.position), pixel_(pixel_size(frame)),
-      relief_(make_scene_relief(scene, frame, progress, report)) {}
+      relief_(make_scene_relief(scene, frame, progress, report)) {
+    if (relief_)
+        open_.emplace(environment, scene.patches->ground);
+}
 
 ReliefSurfaces::~ReliefSurfaces() = default;
 

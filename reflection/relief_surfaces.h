@@ -8,6 +8,7 @@
 // mesh shows without it.
 #include "common/trace/ray_queries.h"
 #include "reflection/camera_rays.h"
+#include "reflection/open_irradiance.h"
 #include "reflection/relief/surface_relief.h"
 
 #include <memory>
@@ -43,8 +44,8 @@ class ReliefSurfaces {
   public:
     /// Makes what relief needs (scene_relief.h), if a camera of this frame may see any: the report tells. Both scene
     /// and queries must outlive it. Throws InputError, Stopped.
-    ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const CameraFrame& frame, Progress& progress,
-                   WorkReport& report);
+    ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                   const CameraFrame& frame, Progress& progress, WorkReport& report);
     ~ReliefSurfaces();
     ReliefSurfaces(const ReliefSurfaces&) = delete;
     ReliefSurfaces& operator=(const ReliefSurfaces&) = delete;
@@ -60,6 +61,9 @@ class ReliefSurfaces {
     /// What a path from a point of relief meets within it; false: it gets out.
     bool meets(const ReliefPoint& from, const glm::vec3& direction, CameraHit& next) const;
 
+    /// Light under the open sky (OpenIrradiance). Not if empty().
+    glm::vec3 open_irradiance(const glm::vec3& normal) const { return open_->at(normal); }
+
   private:
     struct Entry;
     void first_hits_of_meshes(std::span<CameraHit> hits) const;
@@ -72,6 +76,7 @@ class ReliefSurfaces {
     glm::vec3 eye_;
     float pixel_;
     std::unique_ptr<const SceneRelief> relief_; ///< null: there is none in view
+    std::optional<OpenIrradiance> open_;        ///< empty likewise
 };
 
 /// First hits of a row's camera rays, found for some pixels ahead.

@@ -206,7 +206,7 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
     const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, report);
-    const ReliefSurfaces relief(scene, queries, frame, progress, report);
+    const ReliefSurfaces relief(scene, queries, environment, frame, progress, report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss, relief};
 
     Picture picture = PictureDrawing(renderer, frame, options).draw(progress);

@@ -16,6 +16,8 @@ glm::vec3 interpolate(const std::vector<glm::vec3>& values, const glm::uvec3& co
     return weights.x * values[corners.x] + weights.y * values[corners.y] + weights.z * values[corners.z];
 }
 
+constexpr float kMostTurn = 8; ///< times the light that the mesh gets
+
 struct PositionHash {
     std::size_t operator()(const glm::vec3& p) const {
         std::array<std::uint32_t, 3> bits;
@@ -123,11 +125,25 @@ glm::vec3 SurfaceShading::solved_radiance(const SurfacePoint& at) const {
     return at.texture * (at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch]);
 }
 
-/// The solution has the light of the mesh. Relief shows a part of its surroundings only to a point (openness); where
-/// it hides them it stands there itself, and sends what the solution says that bark sends there on the whole.
+/// The solution has the light of the mesh. A slope of relief faces other light: as it would under the open sky, as far
+/// as the place gets that light. And it sees its surroundings only in part (openness); where relief hides them there
+/// are walls as open as this point, so that their light is rho (open E + (1 - open) walls' light): a geometric series.
 glm::vec3 SurfaceShading::indirect_on_relief(const SurfacePoint& at) const {
-    const float open = at.relief->openness;
-    return open * at.texture * solved(at) + (1 - open) * at.optics.reflectance * scene_.radiance_front[at.patch];
+    const ReliefPoint& relief = *at.relief;
+    const glm::vec3 mesh_light = solved(at),
+                    reflectance = scene_.patches->optics[scene_.patches->patches[at.patch].optics].reflectance;
+    const glm::vec3 open_light = relief.surfaces->open_irradiance(relief.mesh_normal),
+                    turned_light = relief.surfaces->open_irradiance(at.normal);
+    const float in_the_open = luminance(reflectance * open_light) / kPi;
+    const float share = in_the_open > 0 ? std::min(1.f, luminance(mesh_light) / in_the_open) : 0.f;
+    glm::vec3 turn(1.f), walls(0.f);
+    for (std::size_t c = 0; c < 3; ++c) {
+        if (open_light[c] > 0)
+            turn[c] = 1 + share * (std::min(turned_light[c] / open_light[c], kMostTurn) - 1);
+        walls[c] = relief.openness / std::max(1 - reflectance[c] * (1 - relief.openness), 1e-3f);
+    }
+    walls *= scene_.radiance_front[at.patch];
+    return relief.openness * at.texture * mesh_light * turn + (1 - relief.openness) * at.optics.reflectance * walls;
 }
 
 SurfaceRadiance SurfaceShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
