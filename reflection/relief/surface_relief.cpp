@@ -166,10 +166,16 @@ void SurfaceRelief::step(Wave& wave, std::vector<Walk>& walks) const {
 
 void SurfaceRelief::follow(std::vector<Walk>& walks) const {
     const std::uint32_t most = std::uint32_t(std::min<std::size_t>(3 * shell_.prisms.size() + 16, 1u << 20));
-    std::vector<std::uint32_t> going;
-    std::vector<Wave> waves(layers_.size());
-    for (std::size_t l = 0; l < layers_.size(); ++l)
+    // Kept from call to call: for single rays, making them anew takes as long as tracing.
+    thread_local std::vector<std::uint32_t> going;
+    thread_local std::vector<Wave> waves;
+    going.clear();
+    waves.resize(std::max(waves.size(), layers_.size()));
+    for (std::size_t l = 0; l < layers_.size(); ++l) {
         waves[l].layer = &layers_[l];
+        waves[l].traced.clear();
+        waves[l].rays.clear();
+    }
     for (std::uint32_t i = 0; i < walks.size(); ++i)
         if (walks[i].state == Walk::State::going)
             going.push_back(i);
@@ -180,9 +186,9 @@ void SurfaceRelief::follow(std::vector<Walk>& walks) const {
             ++w.tetrahedra;
             waves[shell_.prisms[w.prism].layer].take(i, w);
         }
-        for (Wave& wave : waves)
-            if (!wave.rays.empty())
-                step(wave, walks);
+        for (std::size_t l = 0; l < layers_.size(); ++l)
+            if (!waves[l].rays.empty())
+                step(waves[l], walks);
         std::erase_if(going, [&](std::uint32_t i) {
             if (walks[i].state == Walk::State::going)
                 cross(walks[i], shell_);
@@ -268,7 +274,7 @@ SurfaceRelief::Walk SurfaceRelief::from_hit(const SurfaceHit& hit, const glm::ve
 }
 
 void SurfaceRelief::trace(std::span<const SurfaceRay> rays, std::span<SurfaceHit> hits) const {
-    std::vector<Walk> walks;
+    thread_local std::vector<Walk> walks;
     for (std::size_t first = 0; first < rays.size(); first += kBlock) {
         const std::size_t end = std::min(rays.size(), first + kBlock);
         walks.clear();
@@ -282,7 +288,7 @@ void SurfaceRelief::trace(std::span<const SurfaceRay> rays, std::span<SurfaceHit
 
 void SurfaceRelief::occluded(std::span<const SurfaceHit> hits, std::span<const glm::vec3> to_light,
                              std::span<std::uint8_t> hidden, std::span<float> ways_out) const {
-    std::vector<Walk> walks;
+    thread_local std::vector<Walk> walks;
     for (std::size_t first = 0; first < hits.size(); first += kBlock) {
         const std::size_t end = std::min(hits.size(), first + kBlock);
         walks.clear();
@@ -299,7 +305,7 @@ void SurfaceRelief::occluded(std::span<const SurfaceHit> hits, std::span<const g
 
 void SurfaceRelief::trace_on(std::span<const SurfaceHit> from, std::span<const glm::vec3> directions,
                              std::span<SurfaceHit> hits) const {
-    std::vector<Walk> walks;
+    thread_local std::vector<Walk> walks;
     for (std::size_t first = 0; first < from.size(); first += kBlock) {
         const std::size_t end = std::min(from.size(), first + kBlock);
         walks.clear();
