@@ -1,6 +1,7 @@
 #include "viewer/scene/render_scene.h"
 #include "common/services/count_text.h"
 #include "foliage/method.h"
+#include "reflection/gloss_in_transport.h"
 #include "reflection/path_traced_picture.h"
 #include "viewer/scene/scene_memory.h"
 #include "viewer/scene/stage_clock.h"
@@ -19,6 +20,9 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
     progress.throw_if_stopped();
+    ShadedScene shaded = unlit_scene(scene);
+    const std::vector<Optics> with_gloss = optics_with_gloss(shaded);
+    transport->set_optics(with_gloss);
     Solution solution = clock.run("solve", [&] { return transport->solve(scene.environment, progress); });
     report.counts.insert(report.counts.end(), solution.report.counts.begin(), solution.report.counts.end());
     report.skips.insert(report.skips.end(), solution.report.skips.begin(), solution.report.skips.end());
@@ -27,11 +31,11 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
         report.warnings.push_back("no light reaches the scene, or all of it is black");
     progress.throw_if_stopped();
     return clock.run("render", [&] {
-        ShadedScene shaded = unlit_scene(scene);
         shaded.indirect_front = std::move(solution.indirect.front);
         shaded.indirect_back = std::move(solution.indirect.back);
         shaded.radiance_front = std::move(solution.radiance.front);
         shaded.radiance_back = std::move(solution.radiance.back);
+        take_gloss_out(with_gloss, shaded);
         const RayQueries queries(scene.patches);
         return render_picture(shaded, queries, scene.environment, scene.camera, options.picture, progress);
     });
