@@ -75,6 +75,8 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
         progress.throw_if_stopped();
         PixelSum sum(frame, options.layers);
         for (int y = int(begin); y < int(end); ++y) {
+            if (y % std::max(options.every_row, 1) != 0)
+                continue;
             RowHits hits(relief, frame, options, y);
             for (int x = 0; x < options.width; ++x) {
                 const PixelRays rays(frame, options, x, y);

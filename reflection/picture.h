@@ -72,6 +72,7 @@ struct PictureOptions {
     PictureGround ground = PictureGround::automatic;
     std::uint64_t seed = 1;
     bool layers = false; ///< also Picture::layers
+    int every_row = 1;   ///< path tracing: rows between these stay black, so that a truth of part of a picture is cheap
 };
 
 /// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's

@@ -3,6 +3,7 @@
 #include "tests/benchmark/foliage_benchmark.h"
 #include "tests/benchmark/reflection_benchmark.h"
 #include "tests/benchmark/relief_benchmark.h"
+#include "tests/benchmark/render_benchmark.h"
 #include "tests/benchmark/trees_benchmark.h"
 #include "viewer/command.h"
 
@@ -48,6 +49,12 @@ int run_benchmarks(const BenchOptions& options, const CommandContext& context, s
                                           .threads = context.threads,
                                           .experiments = options.experiments},
                                          *context.progress, out);
+    if (wanted("render"))
+        failures += run_render_benchmark({.output_folder = common.output_folder,
+                                          .data_folder = common.data_folder,
+                                          .quick = common.quick,
+                                          .threads = context.threads},
+                                         *context.progress, out);
     return failures;
 }
 
@@ -64,25 +71,29 @@ Command bench_command(CLI::App& program) {
     const auto options = std::make_shared<BenchOptions>();
     FoliageBenchmarkOptions& common = options->foliage;
     CLI::App* app = program.add_subcommand(
-        "bench", "Measure: every method's error against time; growing against others; reflection maps; relief");
+        "bench", "Measure: every method's error against time; growing against others; reflection maps; relief; "
+                 "pictures");
     app->footer("\nExample: kokage bench foliage --quick -o results");
     app->add_option(
            "WHAT", options->what,
            "foliage (methods of shading: error against time), trees (growing: time and memory against leaves, "
            "beside other generators where they are installed), reflection (reflection maps: the paper's "
            "tables, error against time, beside cmgen where it is installed), relief (rays on height fields: reads, "
-           "time, wrong hits, the paper's own experiments) or all")
+           "time, wrong hits, the paper's own experiments), render (pictures: error against time, beside path tracing) "
+           "or all")
         ->required();
-    app->add_option("-o,--output", common.output_folder,
-                    "Folder for foliage.json, trees.json, reflection.json or relief.json, tables (.md), plots and "
-                    "pictures; made if it is missing")
+    app->add_option(
+           "-o,--output", common.output_folder,
+           "Folder for foliage.json, trees.json, reflection.json, relief.json or render.json, tables (.md), plots and "
+           "pictures; made if it is missing")
         ->type_name("FOLDER")
         ->required();
-    app->add_flag("--quick", common.quick,
-                  "foliage: the scenes of 30,000 leaves alone, within two minutes with stored references; trees: two "
-                  "species; reflection, relief: smaller samples, within two minutes");
+    app->add_flag(
+        "--quick", common.quick,
+        "foliage: the scenes of 30,000 leaves alone, within two minutes with stored references; trees: two "
+        "species; reflection, relief: smaller samples, within two minutes; render: small pictures, within three");
     app->add_option("--data", common.data_folder,
-                    "foliage, reflection, relief: folder with env (lat-long images), objects and textures")
+                    "foliage, reflection, relief, render: folder with env (lat-long images), objects and textures")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
     app->add_option("--experiment", options->experiments,
@@ -97,9 +108,10 @@ Command bench_command(CLI::App& program) {
         ->capture_default_str();
     return {app, [options](const CommandContext& context) {
                 const std::string& what = options->what;
-                if (what != "foliage" && what != "trees" && what != "reflection" && what != "relief" && what != "all")
+                if (what != "foliage" && what != "trees" && what != "reflection" && what != "relief" &&
+                    what != "render" && what != "all")
                     throw InputError("there is no benchmark '" + what +
-                                     "'; there are: foliage, trees, reflection, relief, all");
+                                     "'; there are: foliage, trees, reflection, relief, render, all");
                 if (!options->experiments.empty() && what != "reflection" && what != "relief")
                     throw InputError("--experiment: only the benchmarks reflection and relief are made of experiments "
                                      "to choose from");

@@ -10,9 +10,9 @@
 namespace kokage {
 
 struct EnvironmentLoading {
-    bool strict = false;  ///< refuse bad pixels instead of repairing them
-    bool split = true;    ///< split lights off
-    int max_width = 4096; ///< wider maps are reduced by whole factors to at most this (energy kept); 0 = never
+    bool strict = false;     ///< refuse bad pixels instead of repairing them
+    bool split = true;       ///< split lights off
+    int max_width = 4096;    ///< wider maps are reduced by whole factors to at most this (energy kept); 0 = never
     double turn_degrees = 0; ///< about +Y, from +Z towards +X, to the nearest column of pixels
     LightSplitting splitting{};
 };

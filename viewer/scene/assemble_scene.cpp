@@ -321,6 +321,8 @@ class SceneAssembly {
         for (const Thing& thing : things_) {
             progress_.throw_if_stopped();
             add_tree(scene_.tree, *thing.tree, thing.placement, dressed(thing));
+            if (!thing.finishes)
+                scene_.tree_parts = scene_.tree.parts.size();
             progress_.advance(1);
         }
         trees_.clear();

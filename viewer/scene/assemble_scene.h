@@ -21,7 +21,8 @@ struct AssembledScene {
     EnvironmentReport environment_report;
     std::vector<SurfaceLook> looks;           ///< of each of the tree's parts, with gloss and relief
     std::vector<std::uint32_t> triangle_look; ///< per triangle of `patches`
-    float foot_height = 0;                    ///< of the lowest foot, where the ground is
+    std::size_t tree_parts = 0; ///< so many of the tree's parts are of trees; the others, after them, of objects
+    float foot_height = 0;      ///< of the lowest foot, where the ground is
     Camera camera;
     WorkReport report; ///< stages, counts, skips, warnings
 };

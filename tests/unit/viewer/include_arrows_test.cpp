@@ -16,7 +16,7 @@ const std::map<std::string, std::vector<std::string>>& arrows() {
         {"foliage", {"common/", "trees/", "foliage/"}},
         {"reflection", {"common/", "reflection/"}},
         {"viewer", {"common/", "trees/", "foliage/", "reflection/", "viewer/", "tests/benchmark/"}},
-        {"tests/benchmark", {"common/", "trees/", "foliage/", "reflection/", "tests/benchmark/"}}};
+        {"tests/benchmark", {"common/", "trees/", "foliage/", "reflection/", "viewer/scene/", "tests/benchmark/"}}};
     return rooms;
 }
 

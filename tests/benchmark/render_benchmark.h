@@ -1,0 +1,22 @@
+#pragma once
+// `kokage bench render`: error against time of the integrated renderer and of path tracing, on three scenes.
+#include "common/services/progress.h"
+
+#include <filesystem>
+#include <iosfwd>
+
+namespace kokage {
+
+struct RenderBenchmarkOptions {
+    std::filesystem::path output_folder = "."; ///< render.json, render.md, plots and pictures; made if missing
+    std::filesystem::path data_folder{};       ///< with the teapot; empty: a turned pot stands in for it
+    bool quick = false;                        ///< small pictures: within three minutes on 2 cores
+    int threads = 0;                           ///< 0 = all cores; CPU seconds are of all
+    bool plots = true;
+};
+
+/// Measures, and writes after every scene what is known so far: render.json (an array of records), render.md,
+/// render-SCENE.svg, render-SCENE.png. Returns 0; 1 if a measurement failed (the others are still made).
+int run_render_benchmark(const RenderBenchmarkOptions& options, Progress& progress, std::ostream& out);
+
+} // namespace kokage

@@ -1,0 +1,38 @@
+#include "tests/benchmark/render_record.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+nlohmann::json number(const std::optional<double>& value) {
+    return value && std::isfinite(*value) ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+
+} // namespace
+
+nlohmann::json to_json(const RenderRecord& record) {
+    return {
+        {"scene", record.scene},
+        {"method", record.method},
+        {"effort", record.effort},
+        {"width", record.width},
+        {"height", record.height},
+        {"samples", record.samples},
+        {"asked_error", number(record.error)},
+        {"cpu_seconds", number(record.cpu_seconds)},
+        {"transport_cpu_seconds", number(record.transport_cpu_seconds)},
+        {"solve_cpu_seconds", number(record.solve_cpu_seconds)},
+        {"render_cpu_seconds", number(record.render_cpu_seconds)},
+        {"mean_error", number(record.mean_error)},
+        {"p95_error", number(record.p95_error)},
+        {"bias", number(record.bias)},
+        {"reference_noise", number(record.reference_noise)},
+        {"mean_error_of", record.mean_error_of},
+        {"share_of", record.share_of},
+        {"note", record.note},
+    };
+}
+
+} // namespace kokage

@@ -1,0 +1,30 @@
+#pragma once
+// One picture of one scene by one method at one effort: a line of render.json.
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+
+namespace kokage {
+
+struct RenderRecord {
+    std::string scene;  ///< "close", "teapot", "five"
+    std::string method; ///< "fast", "path-traced"
+    std::string effort; ///< "error 0.05, 8 samples", "64 samples"
+    int width = 0, height = 0, samples = 0;
+    std::optional<double> error; ///< asked of the leaves' light: fast
+    double cpu_seconds = 0;      ///< of the whole picture: everything after loading and growing
+    double transport_cpu_seconds = 0, solve_cpu_seconds = 0, render_cpu_seconds = 0; ///< bakes are of rendering
+    /// Over the judged pixels that show tree, object or ground, and all channels: of |x - ref| over the mean of ref.
+    std::optional<double> mean_error, p95_error;
+    std::optional<double> bias;            ///< of x - ref over the mean of ref
+    std::optional<double> reference_noise; ///< mean error of the reference itself, from its two independent halves
+    std::map<std::string, double> mean_error_of; ///< by what the pixel shows: leaf, bark, object, ground, edge
+    std::map<std::string, double> share_of;      ///< of the judged pixels
+    std::string note;
+};
+
+/// All fields; null where there is no figure.
+nlohmann::json to_json(const RenderRecord& record);
+
+} // namespace kokage

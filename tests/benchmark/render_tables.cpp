@@ -1,0 +1,115 @@
+#include "tests/benchmark/render_tables.h"
+#include "tests/benchmark/curve_plot.h"
+#include "tests/benchmark/effort_curve.h"
+#include "tests/benchmark/gnuplot.h"
+#include "tests/benchmark/markdown.h"
+#include "tests/benchmark/render_judge.h"
+#include "tests/benchmark/target_rows.h"
+
+#include <algorithm>
+
+namespace kokage {
+namespace {
+
+using Records = std::vector<RenderRecord>;
+
+std::vector<std::string> scenes_of(const Records& records) {
+    std::vector<std::string> names;
+    for (const RenderRecord& r : records)
+        if (std::find(names.begin(), names.end(), r.scene) == names.end())
+            names.push_back(r.scene);
+    return names;
+}
+
+/// The cheapest fast picture that keeps the promised error; if there is none, the best.
+const RenderRecord* promised(const Records& records, const std::string& scene) {
+    const RenderRecord *best = nullptr, *cheapest = nullptr;
+    for (const RenderRecord& r : records) {
+        if (r.scene != scene || r.method != "fast" || !r.mean_error)
+            continue;
+        if (!best || *r.mean_error < *best->mean_error)
+            best = &r;
+        if (*r.mean_error <= 0.03 && (!cheapest || r.cpu_seconds < cheapest->cpu_seconds))
+            cheapest = &r;
+    }
+    return cheapest ? cheapest : best;
+}
+
+std::string kinds_text(const RenderRecord& r) {
+    std::string text;
+    for (const auto& [kind, error] : r.mean_error_of)
+        text += (text.empty() ? "" : ", ") + kind + " " + three_digits(error, 100);
+    return text;
+}
+
+} // namespace
+
+bool is_judged(const RenderRecord& r) {
+    return r.mean_error && r.reference_noise && *r.reference_noise <= 0.2 * *r.mean_error;
+}
+
+std::optional<double> times_less_cpu(const Records& records, const RenderRecord& fast) {
+    if (!fast.mean_error || !(fast.cpu_seconds > 0))
+        return std::nullopt;
+    std::vector<EffortPoint> points;
+    for (const RenderRecord& r : records)
+        if (r.scene == fast.scene && r.method == "path-traced" && r.mean_error)
+            points.push_back({r.cpu_seconds, *r.mean_error});
+    const std::optional<double> cpu = cpu_at_error(points, *fast.mean_error);
+    return cpu ? std::optional(*cpu / fast.cpu_seconds) : std::nullopt;
+}
+
+std::string render_figures(const Records& records) {
+    std::string text = target_head();
+    for (const std::string& scene : scenes_of(records)) {
+        const RenderRecord* fast = promised(records, scene);
+        if (!fast)
+            continue;
+        const std::string what = scene + ", " + fast->effort + " (" + three_digits(fast->cpu_seconds) + " CPU-s)";
+        text += at_most(what + ": mean error", times(fast->mean_error, 100), 3, " %");
+        text += at_least(what + ": times less CPU than path tracing at that error", times_less_cpu(records, *fast), 20,
+                         "×");
+    }
+    return text;
+}
+
+std::string render_tables(const Records& records) {
+    std::string text =
+        markdown_row({"scene", "method", "effort", "CPU s", "transport", "solve", "render", "mean error %", "p95 %",
+                      "bias %", "reference noise %", "times less CPU", "mean error by kind %"}) +
+        markdown_row(std::vector<std::string>(13, "---"));
+    for (const RenderRecord& r : records)
+        text += markdown_row({r.scene, r.method, r.effort, three_digits(r.cpu_seconds),
+                              three_digits(r.transport_cpu_seconds), three_digits(r.solve_cpu_seconds),
+                              three_digits(r.render_cpu_seconds), three_digits(r.mean_error, 100),
+                              three_digits(r.p95_error, 100), three_digits(r.bias, 100),
+                              three_digits(r.reference_noise, 100) + (is_judged(r) ? "" : " (too noisy to judge)"),
+                              r.method == "fast" ? three_digits(times_less_cpu(records, r)) : "—", kinds_text(r)});
+    return text;
+}
+
+std::string plot_render(const Records& records, const std::filesystem::path& folder) {
+    if (!has_gnuplot())
+        return kNoGnuplot;
+    std::string drawn;
+    for (const std::string& scene : scenes_of(records)) {
+        Curves curves;
+        for (const RenderRecord& r : records)
+            if (r.scene == scene && r.mean_error)
+                curves[r.method].emplace_back(r.cpu_seconds, 100 * *r.mean_error);
+        for (auto& [name, points] : curves)
+            std::sort(points.begin(), points.end());
+        const std::string file = "render-" + scene + ".svg";
+        const bool done = draw_plot(folder / file, [&](const std::string& to) {
+            return curves_script(curves,
+                                 "set logscale xy\nset xlabel 'CPU seconds'\nset ylabel 'mean error, % of the mean "
+                                 "radiance'\nset title '" +
+                                     scene + "'\n",
+                                 to);
+        });
+        drawn += done ? (drawn.empty() ? "plots: " : ", ") + file : "";
+    }
+    return drawn.empty() ? "plots skipped: gnuplot failed" : drawn;
+}
+
+} // namespace kokage
