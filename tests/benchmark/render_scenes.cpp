@@ -90,8 +90,10 @@ std::vector<SceneDescription> render_scenes(int width, int height, const std::fi
     const std::pair<const char*, glm::dvec3> places[] = {
         {"oak", {0, 0, 0}}, {"birch", {5, 0, -2}}, {"maple", {-5, 0, -1}}, {"pine", {9, 0, 3}}, {"cherry", {-9, 0, 2}}};
     std::uint64_t seed = 0;
-    for (const auto& [species, at] : places)
-        five.trees.push_back(tree(species, 8000, at, 40. * double(seed), ++seed));
+    for (const auto& [species, at] : places) {
+        five.trees.push_back(tree(species, 8000, at, 40. * double(seed), seed + 1));
+        ++seed;
+    }
     look(five, {3, 3.5, 17}, {0, 2.2, 0});
     return {close, pot, five};
 }
