@@ -1,0 +1,105 @@
+#include "common/obj/obj_scene.h"
+#include "tests/benchmark/render_judge.h"
+#include "tests/benchmark/render_scenes.h"
+#include "tests/benchmark/render_tables.h"
+#include "tests/support/temporary_folder.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+namespace kokage {
+namespace {
+
+/// A truth of 1 everywhere in four pixels, two of leaves and two of ground.
+RenderTruth even_truth() {
+    RenderTruth truth;
+    truth.radiance = Image(4, 1, 3);
+    truth.radiance.pixels.assign(12, 1.f);
+    truth.pixels = {0, 1, 2, 3};
+    truth.kind = {0, 0, 3, 3};
+    truth.mean = 1;
+    truth.noise = 0.01;
+    return truth;
+}
+
+RenderRecord record_of(const std::string& method, double cpu, double error) {
+    RenderRecord record;
+    record.scene = "close";
+    record.method = method;
+    record.cpu_seconds = cpu;
+    record.mean_error = error;
+    record.reference_noise = 0.001;
+    return record;
+}
+
+TEST(RenderJudge, TellsErrorsByWhatIsSeen) {
+    Image picture(4, 1, 3);
+    picture.pixels = {1.2f, 1.2f, 1.2f, 0.8f, 0.8f, 0.8f, 1, 1, 1, 1.4f, 1.4f, 1.4f};
+    RenderRecord record;
+    judge(picture, even_truth(), record);
+    EXPECT_NEAR(*record.mean_error, 0.2, 1e-6);
+    EXPECT_NEAR(*record.bias, 0.1, 1e-6);
+    EXPECT_NEAR(*record.p95_error, 0.4, 1e-6);
+    EXPECT_NEAR(record.mean_error_of.at("leaf"), 0.2, 1e-6);
+    EXPECT_NEAR(record.mean_error_of.at("ground"), 0.2, 1e-6);
+    EXPECT_NEAR(record.share_of.at("leaf"), 0.5, 1e-6);
+    EXPECT_FALSE(record.mean_error_of.contains("bark"));
+    EXPECT_TRUE(is_judged(record));
+    record.reference_noise = 0.05;
+    EXPECT_FALSE(is_judged(record));
+    const nlohmann::json json = to_json(record);
+    for (const char* field : {"scene", "method", "effort", "cpu_seconds", "mean_error", "p95_error", "reference_noise"})
+        EXPECT_TRUE(json.contains(field)) << field;
+}
+
+TEST(RenderTables, TimesAreComparedAtEqualError) {
+    const RenderRecord fast = record_of("fast", 2, 0.05);
+    const std::vector<RenderRecord> records = {record_of("path-traced", 10, 0.1), record_of("path-traced", 40, 0.05),
+                                               record_of("path-traced", 160, 0.025), fast};
+    EXPECT_NEAR(*times_less_cpu(records, fast), 20, 1e-6);
+    EXPECT_FALSE(times_less_cpu(records, record_of("fast", 2, 0.01))); // nothing is extrapolated
+    EXPECT_NE(render_figures(records).find("20.0×"), std::string::npos);
+}
+
+TEST(RenderJudge, TheTruthOfASmallSceneIsNearItsFastPicture) {
+    const TemporaryFolder folder;
+    SceneDescription description = render_scenes(48, 36, {}, folder.path())[1];
+    description.trees[0].source.leaves = 300;
+    const AssembledScene scene = assemble_scene(description, silent_progress());
+    const RenderTruth truth = find_truth(scene, description.picture, 256, 4, silent_progress());
+    EXPECT_EQ(truth.kind.size(), truth.pixels.size());
+    EXPECT_GT(truth.noise, 0);
+    EXPECT_LT(truth.noise, 0.1);
+    for (const std::uint32_t pixel : truth.pixels)
+        EXPECT_EQ(pixel / 48 % 4, 0u);
+    // The pot is there, too: it was made, as there is no data.
+    EXPECT_NE(std::find(truth.kind.begin(), truth.kind.end(), 2), truth.kind.end());
+    RenderOptions options;
+    options.picture = description.picture;
+    RenderRecord record;
+    judge(render_scene(scene, options, silent_progress()).picture.radiance, truth, record);
+    EXPECT_LT(*record.mean_error, 0.12);
+    EXPECT_LT(std::abs(*record.bias), 0.05);
+}
+
+TEST(RenderScenes, ThePotIsClosed) {
+    const TemporaryFolder folder;
+    std::ofstream(folder / "pot.obj") << turned_pot_obj();
+    const MeshScene scene = read_obj_scene(folder / "pot.obj");
+    ASSERT_EQ(scene.meshes.size(), 1u);
+    // The divergence theorem: the sum of area times normal of a closed surface is 0.
+    glm::dvec3 sum(0.0);
+    double volume = 0;
+    const SceneMesh& mesh = scene.meshes[0];
+    for (const glm::uvec3& t : mesh.triangles) {
+        const glm::dvec3 a(mesh.positions[t.x]), b(mesh.positions[t.y]), c(mesh.positions[t.z]);
+        sum += glm::cross(b - a, c - a);
+        volume += glm::dot(a, glm::cross(b, c)) / 6;
+    }
+    EXPECT_LT(glm::length(sum), 1e-4);
+    EXPECT_GT(volume, 1); // fronts look outwards
+}
+
+} // namespace
+} // namespace kokage
