@@ -13,7 +13,7 @@ constexpr int kNodes = 40;
 constexpr int kLevels = 6;
 constexpr float kReach = 8;    ///< of the coarsest grid, in scene radii
 constexpr float kBlend = 0.2f; ///< outer share of a grid that fades into the next
-constexpr std::uint32_t kDirections = 512;
+constexpr std::uint32_t kDirections = 256;
 constexpr std::uint32_t kOpenDirections = 1u << 16;
 constexpr std::uint32_t kPattern = 0x6b6f6b61u;
 
