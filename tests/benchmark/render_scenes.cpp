@@ -94,7 +94,7 @@ std::vector<SceneDescription> render_scenes(int width, int height, const std::fi
         five.trees.push_back(tree(species, 8000, at, 40. * double(seed), seed + 1));
         ++seed;
     }
-    look(five, {3, 3.5, 17}, {0, 2.2, 0});
+    look(five, {1, 4.5, 27}, {0, 2.2, 0}); // all five are in the picture
     return {close, pot, five};
 }
 
