@@ -23,6 +23,7 @@ struct Command {
 Command grow_command(CLI::App& program);
 Command describe_command(CLI::App& program);
 Command shade_command(CLI::App& program);
+Command render_command(CLI::App& program);
 Command bake_command(CLI::App& program);
 Command compare_command(CLI::App& program);
 Command bench_command(CLI::App& program);

@@ -1,4 +1,5 @@
 #include "viewer/shading_report.h"
+#include "viewer/report_json.h"
 
 #include <cmath>
 #include <map>
@@ -9,55 +10,9 @@ namespace kokage {
 namespace {
 using Json = nlohmann::ordered_json;
 
-Json number(double value) {
-    return std::isfinite(value) ? Json(value) : Json(nullptr);
-}
-
-Json color(const glm::vec3& rgb) {
-    return Json::array({number(double(rgb.r)), number(double(rgb.g)), number(double(rgb.b))});
-}
-
-Json pairs(const std::vector<std::pair<std::string, std::string>>& list) {
-    Json json = Json::object();
-    for (const auto& [name, value] : list) {
-        if (!json.contains(name))
-            json[name] = value;
-        else if (json[name].is_array())
-            json[name].push_back(value);
-        else
-            json[name] = Json::array({json[name], value});
-    }
-    return json;
-}
-
 Json tree_json(const Tree& tree) {
     return {
         {"name", tree.name}, {"source", tree.source}, {"branching_known", tree.branching_known}, {"notes", tree.notes}};
-}
-
-Json environment_json(const Environment& environment, const EnvironmentReport& report) {
-    Json lights = Json::array();
-    for (const DistantLight& light : environment.distant_lights)
-        lights.push_back({{"name", light.name},
-                          {"direction", color(light.direction)},
-                          {"half_angle", number(double(light.half_angle))},
-                          {"irradiance", color(light.irradiance)}});
-    for (const PointLight& light : environment.point_lights)
-        lights.push_back(
-            {{"name", light.name}, {"position", color(light.position)}, {"intensity", color(light.intensity)}});
-    Json json = {
-        {"description", environment.description},
-        {"bad_pixels",
-         {{"nan", report.nan_pixels}, {"infinite", report.infinite_pixels}, {"negative", report.negative_pixels}}},
-        {"bright_regions_found", report.regions_found},
-        {"energy_before", number(report.energy_before)},
-        {"energy_after", number(report.energy_after)},
-        {"lights", std::move(lights)}};
-    if (report.first_bad_x >= 0)
-        json["bad_pixels"]["first"] = {report.first_bad_x, report.first_bad_y};
-    if (!report.note.empty())
-        json["note"] = report.note;
-    return json;
 }
 
 Json optics_json(const PatchScene& scene) {
@@ -71,8 +26,8 @@ Json optics_json(const PatchScene& scene) {
     for (const auto& [index, use] : used)
         json.push_back({{"kind", use.first},
                         {"patches", use.second},
-                        {"reflectance", color(scene.optics[index].reflectance)},
-                        {"transmittance", color(scene.optics[index].transmittance)}});
+                        {"reflectance", vector_json(scene.optics[index].reflectance)},
+                        {"transmittance", vector_json(scene.optics[index].transmittance)}});
     return json;
 }
 
@@ -88,15 +43,6 @@ Json method_json(const ShadingRecord& record) {
     json["max_bounces"] = o.max_bounces;
     json["gather"] = o.gather == GatherRule::rule ? "rule" : "cosine";
     json["seed"] = o.seed;
-    return json;
-}
-
-Json stages_json(const WorkReport& report) {
-    Json json = Json::array();
-    for (const WorkReport::Stage& stage : report.stages)
-        json.push_back({{"name", stage.name},
-                        {"cpu_seconds", number(stage.cpu_seconds)},
-                        {"wall_seconds", number(stage.wall_seconds)}});
     return json;
 }
 
@@ -118,39 +64,36 @@ Json shading_report(const ShadingRecord& record) {
                    {"maps", solution.light_maps.size()},        {"transport_bytes", solution.transport_bytes}};
     for (const WorkReport::Count& count : all.counts)
         counts[count.name] = count.value;
-    Json skipped = Json::array();
-    for (const WorkReport::Skip& skip : all.skips)
-        skipped.push_back({{"what", skip.what}, {"why", skip.why}, {"would_have_cost", skip.saved}});
     Json residuals = Json::array();
     for (double residual : solution.residuals)
-        residuals.push_back(number(residual));
+        residuals.push_back(number_json(residual));
 
     Json report;
     report["program"] = "kokage " KOKAGE_VERSION;
-    report["inputs"] = {{"arguments", pairs(record.arguments)},
+    report["inputs"] = {{"arguments", pairs_json(record.arguments)},
                         {"tree", tree_json(*record.tree)},
                         {"environment", environment_json(*record.environment, record.environment_report)},
                         {"optics", optics_json(*record.patches)}};
     if (record.patches->ground)
-        report["inputs"]["ground"] = {{"height_m", number(double(record.patches->ground->height_m))},
-                                      {"albedo", color(record.patches->ground->albedo)}};
+        report["inputs"]["ground"] = {{"height_m", number_json(double(record.patches->ground->height_m))},
+                                      {"albedo", vector_json(record.patches->ground->albedo)}};
     report["method"] = method_json(record);
     report["counts"] = std::move(counts);
     report["stages"] = stages_json(record.work);
     report["method_stages"] = stages_json(solution.report);
-    report["cpu_seconds"] = number(record.cpu_seconds);
-    report["wall_seconds"] = number(record.wall_seconds);
+    report["cpu_seconds"] = number_json(record.cpu_seconds);
+    report["wall_seconds"] = number_json(record.wall_seconds);
     report["peak_memory_bytes"] = peak_memory_bytes();
     report["residuals"] = std::move(residuals);
     const double in = solution.energy_in, out = solution.energy_absorbed + solution.energy_escaped;
-    report["energy"] = {{"in", number(in)},
-                        {"absorbed", number(solution.energy_absorbed)},
-                        {"escaped", number(solution.energy_escaped)},
-                        {"balance", number(in > 0 ? out / in : NAN)}};
-    report["estimated_error"] = solution.estimated_error ? number(*solution.estimated_error) : Json(nullptr);
-    report["skipped"] = std::move(skipped);
+    report["energy"] = {{"in", number_json(in)},
+                        {"absorbed", number_json(solution.energy_absorbed)},
+                        {"escaped", number_json(solution.energy_escaped)},
+                        {"balance", number_json(in > 0 ? out / in : NAN)}};
+    report["estimated_error"] = solution.estimated_error ? number_json(*solution.estimated_error) : Json(nullptr);
+    report["skipped"] = skips_json(all);
     report["warnings"] = all.warnings;
-    report["outputs"] = pairs(record.outputs);
+    report["outputs"] = pairs_json(record.outputs);
     return report;
 }
 

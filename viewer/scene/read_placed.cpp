@@ -1,6 +1,7 @@
 // A scene file's trees and objects.
 #include "common/services/error.h"
 #include "common/services/named_file.h"
+#include "common/services/nearest_word.h"
 #include "viewer/scene/scene_parts.h"
 
 #include <charconv>
@@ -43,25 +44,43 @@ std::string value_text(double value) {
     return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-void read_settings(const JsonReader& json, GrowthParameters parameters, std::vector<std::string>& settings) {
-    json.for_each_member([&](const std::string& name, const JsonReader& value) {
-        if (name.find('=') != std::string::npos)
-            value.fail("no growth parameter has a '=' in its name");
-        at(value, [&] {
-            if (value.is_string())
-                set_parameter(parameters, name, std::string_view(value.text()));
-            else
-                set_parameter(parameters, name, value.number(-1e300, 1e300));
-        });
-        settings.push_back(name + "=" + (value.is_string() ? value.text() : value_text(value.number(-1e300, 1e300))));
-    });
+/// What `value` sets, as text.
+std::string setting_text(const std::string& name, const JsonReader& value, GrowthParameters& parameters) {
+    if (!value.is_string()) {
+        const double number = value.number(-1e300, 1e300);
+        at(value, [&] { set_parameter(parameters, name, number); });
+        return name + "=" + value_text(number);
+    }
+    const std::string text = value.text();
+    at(value, [&] { set_parameter(parameters, name, std::string_view(text)); });
+    for (const ParameterDescription& p : parameter_descriptions(parameters))
+        if (p.name == name && p.choices.empty())
+            value.fail("found \"" + text + "\" where a number is needed: " + range_text(p));
+    return name + "=" + text;
 }
 
 void refuse_scenes(const JsonReader& name, const fs::path& file) {
-    const std::vector<unsigned char> bytes = read_file_bytes(file, kLargestSpeciesFile);
-    const auto json = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    nlohmann::ordered_json json;
+    at(name, [&] {
+        const std::vector<unsigned char> bytes = read_file_bytes(file, kLargestSpeciesFile);
+        json = parse_json({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, file.string());
+    });
     if (json.is_object() && json.contains("kokage_scene"))
         name.fail("'" + shown_name(name.text()) + "' is a scene; a scene can't be within a scene (it could be cyclic)");
+}
+
+void check_species(const JsonReader& name) {
+    std::vector<std::string> names;
+    std::string list;
+    for (const Species& species : all_species()) {
+        if (species.name == name.text())
+            return;
+        names.push_back(species.name);
+        list += (list.empty() ? "" : ", ") + species.name;
+    }
+    const auto near = nearest_word(name.text(), names);
+    name.fail("no species is called '" + shown_name(name.text()) + "'; " +
+              (near ? "did you mean '" + *near + "'?" : "there are: " + list + ", or give a species file (.json)"));
 }
 
 void read_species_source(const JsonReader& json, const JsonReader& name, const SceneFiles& files, PlacedTree& tree) {
@@ -71,8 +90,10 @@ void read_species_source(const JsonReader& json, const JsonReader& name, const S
     tree.source.name = name.text();
     if (lower_ending(tree.source.name) == ".json") {
         const fs::path file = files.find(name, {".json"});
-        at(name, [&] { refuse_scenes(name, file); });
+        refuse_scenes(name, file);
         tree.source.name = file.string();
+    } else {
+        check_species(name);
     }
     at(name, [&] { asked_species(tree.source); });
     if (const auto leaves = json.find("leaves")) {
@@ -85,7 +106,10 @@ void read_species_source(const JsonReader& json, const JsonReader& name, const S
         for (const char* key : {"leaves", "seed"})
             if (json.find(key) && settings->find(key))
                 settings->find(key)->fail("'" + std::string(key) + "' is given twice, beside 'set', too; keep one");
-        read_settings(*settings, asked_species(tree.source).parameters, tree.source.settings);
+        GrowthParameters parameters = asked_species(tree.source).parameters;
+        settings->for_each_member([&](const std::string& key, const JsonReader& value) {
+            tree.source.settings.push_back(setting_text(key, value, parameters));
+        });
     }
     at(json, [&] { check_tree_source(tree.source); });
 }
