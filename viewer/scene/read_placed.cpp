@@ -101,7 +101,7 @@ void read_species_source(const JsonReader& json, const JsonReader& name, const S
         at(*leaves, [&] { asked_species(tree.source); });
     }
     if (const auto seed = json.find("seed"))
-        tree.seed = std::uint64_t(seed->number(0, 4294967295.0));
+        tree.seed = std::uint64_t(seed->integer(0, std::numeric_limits<int>::max()));
     if (const auto settings = json.find("set")) {
         for (const char* key : {"leaves", "seed"})
             if (json.find(key) && settings->find(key))

@@ -51,16 +51,21 @@ fs::path SceneFiles::find(const JsonReader& name, std::initializer_list<const ch
 void SceneFiles::fail_to_find(const JsonReader& name, const std::string& text, const std::string& endings) const {
     constexpr std::size_t kMostNames = 10000;
     const fs::path inner = fs::path(text).parent_path();
-    std::vector<std::string> names;
+    std::vector<std::string> stems, names;
     for (const fs::path& folder : folders_) {
         std::error_code error;
         const fs::path place = folder / inner;
         for (fs::directory_iterator at(place.empty() ? "." : place, error), end;
              !error && at != end && names.size() < kMostNames; at.increment(error))
-            if (endings.find(lower_ending(at->path())) != std::string::npos && !lower_ending(at->path()).empty())
+            if (endings.find(lower_ending(at->path())) != std::string::npos && !lower_ending(at->path()).empty()) {
+                stems.push_back(at->path().stem().string());
                 names.push_back((inner / at->path().filename()).string());
+            }
     }
-    const auto near = nearest_word(text, names);
+    const auto stem = nearest_word(fs::path(text).stem().string(), stems);
+    const auto near =
+        stem ? std::optional(names[std::size_t(std::find(stems.begin(), stems.end(), *stem) - stems.begin())])
+             : std::nullopt;
     const std::string beside = folders_.front().empty() ? "." : folders_.front().string();
     name.fail("there is no file '" + shown_name(text) + "' beside the scene (in '" + beside + "')" +
               (folders_.size() > 1 ? " nor in the data folder '" + folders_[1].string() + "'" : "") +
