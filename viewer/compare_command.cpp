@@ -1,5 +1,6 @@
 // `kokage compare`: how far two pictures, two reflection maps or two shadings of a tree are apart.
 #include "common/scene/image_file.h"
+#include "common/scene/image_layers.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
@@ -76,6 +77,20 @@ Image clamped(Image image) {
     return image;
 }
 
+/// What two pictures of `kokage render` show, part by part: error of each layer that both have, of equal channels.
+std::vector<std::pair<std::string, DifferenceFigures>> compare_layers(const CompareOptions& options) {
+    if (lower_ending(options.picture) != ".exr" || lower_ending(options.reference) != ".exr")
+        return {};
+    std::vector<std::pair<std::string, DifferenceFigures>> figures;
+    const std::vector<ImageLayer> layers = load_layers(options.picture), references = load_layers(options.reference);
+    for (const ImageLayer& layer : layers)
+        for (const ImageLayer& reference : references)
+            if (!layer.name.empty() && layer.name == reference.name && layer.channel_names.size() == 3 &&
+                layer.channel_names == reference.channel_names)
+                figures.emplace_back(layer.name, compare_images(layer.image, reference.image).all);
+    return figures;
+}
+
 void compare_pictures(const CompareOptions& options, const CommandContext& context) {
     // As stored, without alpha: 8-bit pictures are compared as they are shown, float pictures as radiance.
     const ImageLoading as_stored{.meaning = PixelMeaning::data, .channels = 3};
@@ -94,6 +109,11 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
     if (whole.skipped_values > 0)
         std::printf("not finite, in no figure: %s\n", counted(whole.skipped_values, "value", "values").c_str());
+    const auto layers = compare_layers(options);
+    if (!layers.empty())
+        std::printf("these figures are of the radiance; layer by layer:\n");
+    for (const auto& [name, figures] : layers)
+        print_figures(name.c_str(), figures, 1);
     const char* shows = "largest difference of each pixel's channels";
     const std::string legend = error_legend_text(double(whole.map_scale), 1, "");
     if (!options.error_map.empty()) {
@@ -108,6 +128,8 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
                        {"largest_error_at", {whole.max_x, whole.max_y}},
                        {"values_not_finite", whole.skipped_values},
                        {"warnings", unlike.empty() ? Json::array() : Json::array({unlike})}};
+        for (const auto& [name, figures] : layers)
+            report["layers"][name] = figures_json(figures);
         if (!options.error_map.empty())
             report["error_map"] = map_json(options.error_map, shows, double(whole.map_scale), legend);
         write_json(options.report, report);
@@ -215,7 +237,8 @@ Command compare_command(CLI::App& program) {
         "compare", "Error figures and an error map of two pictures, reflection maps or shadings of a tree");
     app->footer("\nExample: kokage compare fast.png truth.png -o errors.png");
     app->add_option("A", options->picture,
-                    "What is judged: a picture (.png, .exr, .hdr, .jpg, ...), a reflection map (.exr of kokage bake, "
+                    "What is judged: a picture (.png, .exr, .hdr, .jpg, ...; of an .exr with layers its radiance, and "
+                    "each layer), a reflection map (.exr of kokage bake, "
                     ".ktx2, .dds) or a tree shaded by kokage (.glb)")
         ->required()
         ->type_name("FILE");
