@@ -123,6 +123,7 @@ void render(const CLI::App& app, RenderCommandOptions& options, const CommandCon
     record.work.warnings = complete.scene.warnings;
     record.work.append(scene.report);
     record.work.append(rendered.report);
+    record.picture = rendered.picture.report;
     StageClock clock;
     const WritingFiles writing;
     clock.run("write", [&] {

@@ -73,6 +73,7 @@ Json render_report(const RenderRecord& record) {
                          {"subject_mean_luminance", number_json(record.subject_radiance)}};
     report["counts"] = std::move(counts);
     report["stages"] = stages_json(record.work);
+    report["render_stages"] = stages_json(record.picture);
     report["cpu_seconds"] = number_json(record.cpu_seconds);
     report["wall_seconds"] = number_json(record.wall_seconds);
     report["peak_memory_bytes"] = peak_memory_bytes();

@@ -219,11 +219,11 @@ class SceneAssembly {
             return 1;
         const double height = object.high.y - object.low.y;
         if (!(*placed.height_m > 0) || !std::isfinite(*placed.height_m))
-            fail(placed.pointer + "/height_m", "it is " + std::to_string(*placed.height_m) + "; it must be above 0");
+            fail(placed.pointer + "/height", "it is " + std::to_string(*placed.height_m) + "; it must be above 0");
         if (!(height > 0))
-            fail(placed.pointer + "/height_m", "'" + placed.file.string() +
-                                                   "' is flat: it has no height that could be scaled; give its size "
-                                                   "in the placement instead");
+            fail(placed.pointer + "/height", "'" + placed.file.string() +
+                                                 "' is flat: it has no height that could be scaled; give 'size' "
+                                                 "instead");
         return *placed.height_m / height;
     }
 

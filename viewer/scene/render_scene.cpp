@@ -58,7 +58,9 @@ RenderedScene render_scene(const AssembledScene& scene, const RenderOptions& opt
                            ? render_solved(scene, options, clock, rendered.report, progress)
                            : render_paths(scene, options, clock, progress);
     rendered.report.stages = clock.stages();
-    rendered.report.append(rendered.picture.report);
+    WorkReport of_picture = rendered.picture.report;
+    of_picture.stages.clear(); // they are parts of "render"
+    rendered.report.append(of_picture);
     return rendered;
 }
 

@@ -14,7 +14,7 @@ struct RenderOptions {
 
 struct RenderedScene {
     Picture picture;
-    WorkReport report; ///< transport, solve, bake, render: stages, counts, skips, warnings
+    WorkReport report; ///< transport, solve, render (its parts: picture.report): stages, counts, skips, warnings
 };
 
 RenderedScene render_scene(const AssembledScene& scene, const RenderOptions& options, Progress& progress);

@@ -293,6 +293,19 @@ TEST(SceneSchema, AcceptsTheExampleAsTheReaderDoes) {
     EXPECT_TRUE(schema.accepts(SceneFolder::good_scene()));
 }
 
+TEST(SceneSchema, AcceptsTheSceneThatIsDocumented) {
+    const std::string readme = read_text(std::filesystem::path(KOKAGE_TESTS_FOLDER) / "../viewer/scene/README.md");
+    const std::string fence = "```json\n";
+    const std::size_t begin = readme.find(fence), end = readme.find("```", begin + fence.size());
+    ASSERT_NE(end, std::string::npos);
+    const Json scene =
+        Json::parse(readme.substr(begin + fence.size(), end - begin - fence.size()), nullptr, true, true);
+    const JsonSchema schema(Json::parse(scene_schema_text()));
+    EXPECT_TRUE(schema.accepts(scene));
+    for (const auto& [key, rule] : schema.root()["properties"].items())
+        EXPECT_TRUE(scene.contains(key)) << key;
+}
+
 TEST(SceneSchema, TellsEveryGrowthParameterAndSpecies) {
     const Json schema = Json::parse(scene_schema_text());
     const Json& growth = schema["definitions"]["growth"]["properties"];
