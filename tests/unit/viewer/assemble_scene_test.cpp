@@ -304,7 +304,7 @@ TEST(AssembleScene, WhatCannotBeIsRefused) {
     SceneDescription description = constant_scene();
     description.objects = {object_at(folder / "flat.obj", {0, 0, 0})};
     description.objects[0].height_m = 1;
-    EXPECT_NE(complaint(description).find("/objects/0/height_m: "), std::string::npos) << complaint(description);
+    EXPECT_NE(complaint(description).find("/objects/0/height: "), std::string::npos) << complaint(description);
     description.objects = {object_at(folder / "none.obj", {0, 0, 0})};
     EXPECT_NE(complaint(description).find("/objects/0: "), std::string::npos) << complaint(description);
     description.objects = {object_at(folder / "flat.obj", {0, 0, 0}, "gold")};
