@@ -16,6 +16,7 @@ struct RenderRecord {
     const AssembledScene* scene = nullptr;
     RenderOptions options;
     WorkReport work;                                          ///< of everything
+    WorkReport picture;                                       ///< parts of the stage that draws
     double exposure_stops = 0;                                ///< of .png pictures
     double subject_share = 0;                                 ///< of the picture's pixels that show surfaces
     double subject_radiance = 0;                              ///< their mean luminance
