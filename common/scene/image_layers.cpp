@@ -83,6 +83,7 @@ void save_layers(const std::filesystem::path& path, const std::vector<ImageLayer
         for (const std::string& channel : layer.channel_names)
             spec.channelnames.push_back(layer.name.empty() ? channel : layer.name + "." + channel);
     }
+    spec.attribute("DateTime", ""); // else the time of writing: the same picture would be other bytes each time
     spec.nchannels = int(spec.channelnames.size());
     spec.attribute("oiio:ColorSpace", "Linear");
     spec.attribute("compression", "zip");

@@ -105,6 +105,7 @@ void save_image(const std::filesystem::path& path, const Image& image, const Ima
         const Image stored = for_float_format(image, hdr);
         OIIO::ImageSpec spec(stored.width, stored.height, stored.channels, OIIO::TypeDesc::FLOAT);
         spec.attribute("oiio:ColorSpace", "Linear");
+        spec.attribute("DateTime", ""); // else the time of writing: the same picture would be other bytes each time
         good = output->open(file.temporary_path().string(), spec) &&
                output->write_image(OIIO::TypeDesc::FLOAT, stored.pixels.data());
     }
