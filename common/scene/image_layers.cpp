@@ -87,7 +87,6 @@ void save_layers(const std::filesystem::path& path, const std::vector<ImageLayer
     spec.nchannels = int(spec.channelnames.size());
     spec.attribute("oiio:ColorSpace", "Linear");
     spec.attribute("compression", "zip");
-    spec.attribute("DateTime", ""); // else the time of writing: the same picture would be other bytes each time
     use_our_thread_count();
     OutputFile file(path);
     const auto output = OIIO::ImageOutput::create("exr");
