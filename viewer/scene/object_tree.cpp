@@ -4,6 +4,7 @@
 #include "common/obj/obj_scene.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
+#include "common/stl/stl_scene.h"
 #include "trees/foreign_tree.h"
 #include "trees/surface_patches.h"
 
@@ -124,8 +125,10 @@ MeshScene read_object(const std::filesystem::path& file, Progress& progress) {
     const std::string ending = lower_ending(file);
     if (ending == ".obj")
         return read_obj_scene(file, progress);
+    if (ending == ".stl")
+        return read_stl_scene(file);
     if (ending != ".glb" && ending != ".gltf")
-        throw InputError(file.string() + ": an object is a .glb, .gltf or .obj");
+        throw InputError(file.string() + ": an object is a .glb, .gltf, .obj or .stl");
     const GltfDocument document = GltfDocument::read(file, progress);
     MeshScene scene = flatten(document, std::nullopt, progress);
     read_gltf_gloss_textures(document, scene, progress);
