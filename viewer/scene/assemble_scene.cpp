@@ -278,6 +278,8 @@ class SceneAssembly {
         SceneSurface surface{thing.tree->materials[material], {}};
         if (thing.finishes)
             surface.finish = (*thing.finishes)[material];
+        surface.material.height_depth_m *= float(thing.placement.size); // metres on the tree as it was made
+        surface.material.height_tile_m *= float(thing.placement.size);
         if (const MaterialDescription* description = material_named(name, thing.pointer))
             surface = told_at(description->pointer,
                               [&] { return changed_surface(std::move(surface), *description, textures_); });
@@ -295,9 +297,13 @@ class SceneAssembly {
             const MaterialDescription* material = material_named(name, thing.pointer);
             return material && material->roughness_from_foot_to_top;
         };
+        bool has_heights = false;
+        for (const TreeMaterial& material : thing.tree->materials)
+            has_heights |= bool(material.height_texture);
         const bool depends = by_height(thing.leaf_material) || by_height(thing.bark_material);
-        const auto [entry, is_new] = dressed_.try_emplace(
-            {thing.tree, thing.leaf_material, thing.bark_material, depends ? foot : 0.f, depends ? top : 0.f});
+        const auto [entry, is_new] =
+            dressed_.try_emplace({thing.tree, thing.leaf_material, thing.bark_material, depends ? foot : 0.f,
+                                  depends ? top : 0.f, has_heights ? float(thing.placement.size) : 1.f});
         MaterialNumbers& result = entry->second;
         if (!is_new)
             return result;
@@ -450,7 +456,7 @@ class SceneAssembly {
     std::map<std::string, LoadedTree> trees_;
     std::map<std::pair<std::filesystem::path, std::string>, ObjectTree> objects_;
     std::vector<Thing> things_;
-    std::map<std::tuple<const Tree*, std::string, std::string, float, float>, MaterialNumbers> dressed_;
+    std::map<std::tuple<const Tree*, std::string, std::string, float, float, float>, MaterialNumbers> dressed_;
     std::vector<SceneSurface> surfaces_; ///< of each of the tree's materials
     std::vector<std::pair<float, float>> heights_;
     std::set<std::string> used_materials_;

@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -107,8 +108,24 @@ TEST(AssembleScene, TreesStandWhereTheyArePlaced) {
         EXPECT_LT(glm::distance(scene.tree.leaves[80 + i].centre, expected), 1e-5f);
     }
     EXPECT_FLOAT_EQ(scene.foot_height, 0);
-    // The second is the same tree in the same clothes: it shares the materials.
-    EXPECT_EQ(scene.tree.parts[0].material, scene.tree.parts[scene.tree.parts.size() / 2].material);
+}
+
+TEST(AssembleScene, ReliefGrowsWithItsTree) {
+    SceneDescription description = constant_scene();
+    description.trees = {tree_at("oak", 50, {0, 0, 0}), tree_at("oak", 50, {20, 0, 0}), tree_at("oak", 50, {9, 0, 9})};
+    description.trees[1].placement.size = 2;
+    const AssembledScene scene = assemble_scene(description, silent_progress());
+    std::vector<float> depths;
+    for (const SurfaceLook& look : scene.looks)
+        if (look.relief.heights)
+            depths.push_back(look.relief.depth_m);
+    ASSERT_GE(depths.size(), 2u);
+    const auto [least, most] = std::minmax_element(depths.begin(), depths.end());
+    EXPECT_FLOAT_EQ(*most, 2 * *least);
+    // The third is the first once more, in the same clothes: it shares the materials.
+    const std::size_t parts = scene.tree.parts.size() / 3;
+    EXPECT_EQ(scene.tree.parts[0].material, scene.tree.parts[2 * parts].material);
+    EXPECT_NE(scene.tree.parts[0].material, scene.tree.parts[parts].material);
 }
 
 TEST(AssembleScene, SeedsMakeDifferentTrees) {
