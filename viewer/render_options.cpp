@@ -45,7 +45,8 @@ void add_render_method_options(CLI::App& app, RenderCommandOptions& o) {
         ->capture_default_str()
         ->group("Method");
     app.add_option("--error", o.error,
-                   "fast: mean relative error of the leaves' light to aim at (otherwise 0.05 for 5 %)")
+                   "fast: mean relative error of the leaves' light to aim at (otherwise 0.15 for 15 %; pixels err "
+                   "less, as they add up many leaves)")
         ->type_name("E")
         ->group("Method");
     app.add_option("--seed", o.seed, "Seed of random numbers (another tree: --set seed=N)")

@@ -8,7 +8,9 @@ enum class RenderMethod { fast, path_traced };
 
 struct RenderOptions {
     RenderMethod method = RenderMethod::fast;
-    double error = 0.05; ///< asked of the leaves' light (ShadingOptions::error)
+    /// Asked of the leaves' light (ShadingOptions::error). Coarser than `shade`'s, because a pixel adds up many leaves:
+    /// on an oak's picture 0.15 and 0.05 were 3.95 and 3.88 % from the truth, for 0.13 and 0.73 CPU-s.
+    double error = 0.15;
     PictureOptions picture;
 };
 
