@@ -49,21 +49,21 @@ class SceneMeasurement {
 
     const RenderTruth& truth() const { return truth_; }
 
-    RenderRecord fast(const FastEffort& effort, Image* radiance) {
+    PictureRecord fast(const FastEffort& effort, Image* radiance) {
         RenderOptions options;
         options.picture = picture_;
         options.picture.samples = effort.samples;
         options.error = effort.error;
         const Stopwatch watch;
         const RenderedScene rendered = render_scene(scene_, options, progress_);
-        RenderRecord record = record_of("fast", effort.samples);
+        PictureRecord record = record_of("fast", effort.samples);
         record.cpu_seconds = watch.cpu();
         record.error = effort.error;
         record.effort = "error " + three_digits(effort.error) + ", " + std::to_string(effort.samples) + " samples";
         for (const WorkReport::Stage& stage : rendered.report.stages)
-            for (const auto& [stage_name, field] : {std::pair("transport", &RenderRecord::transport_cpu_seconds),
-                                                    std::pair("solve", &RenderRecord::solve_cpu_seconds),
-                                                    std::pair("render", &RenderRecord::render_cpu_seconds)})
+            for (const auto& [stage_name, field] : {std::pair("transport", &PictureRecord::transport_cpu_seconds),
+                                                    std::pair("solve", &PictureRecord::solve_cpu_seconds),
+                                                    std::pair("render", &PictureRecord::render_cpu_seconds)})
                 if (stage.name == stage_name)
                     record.*field = stage.cpu_seconds;
         judge(rendered.picture.radiance, truth_, record);
@@ -72,12 +72,12 @@ class SceneMeasurement {
         return record;
     }
 
-    RenderRecord traced(int samples) {
+    PictureRecord traced(int samples) {
         if (!(traced_cpu_ > 0))
             time_tracing();
         PictureOptions rows = picture_;
         rows.every_row = plan_.every_row;
-        RenderRecord record = record_of("path-traced", samples);
+        PictureRecord record = record_of("path-traced", samples);
         record.effort = std::to_string(samples) + " samples";
         record.cpu_seconds = record.render_cpu_seconds = traced_cpu_ * samples / kTimedSamples;
         record.note = "time of " + std::to_string(kTimedSamples) + " samples in proportion; errors of judged rows";
@@ -86,8 +86,8 @@ class SceneMeasurement {
     }
 
   private:
-    RenderRecord record_of(const std::string& method, int samples) const {
-        RenderRecord record;
+    PictureRecord record_of(const std::string& method, int samples) const {
+        PictureRecord record;
         record.scene = name_;
         record.method = method;
         record.width = picture_.width;
@@ -119,7 +119,7 @@ class SceneMeasurement {
     double traced_cpu_ = 0;
 };
 
-void tell(std::ostream& out, const RenderRecord& r) {
+void tell(std::ostream& out, const PictureRecord& r) {
     out << "  " << r.scene << ", " << r.method << ", " << r.effort << ": " << three_digits(r.cpu_seconds)
         << " CPU-s, error " << three_digits(r.mean_error, 100) << " %, p95 " << three_digits(r.p95_error, 100)
         << " %, bias " << three_digits(r.bias, 100) << " %, noise of the truth " << three_digits(r.reference_noise, 100)
@@ -136,14 +136,14 @@ int run_render_benchmark(const RenderBenchmarkOptions& options, Progress& progre
         set_thread_count(options.threads);
     BenchmarkRun run(options.output_folder, out);
     const RenderPlan plan = plan_of(options.quick);
-    std::vector<RenderRecord> records;
-    const auto take = [&](const RenderRecord& record) {
+    std::vector<PictureRecord> records;
+    const auto take = [&](const PictureRecord& record) {
         records.push_back(record);
         tell(out, record);
     };
     const auto write = [&] {
         nlohmann::json json = nlohmann::json::array();
-        for (const RenderRecord& record : records)
+        for (const PictureRecord& record : records)
             json.push_back(to_json(record));
         run.write("render", "Benchmark of the renderer", json, render_figures(records), render_tables(records));
     };

@@ -103,7 +103,7 @@ RenderTruth find_truth(const AssembledScene& scene, const PictureOptions& pictur
     return truth;
 }
 
-void judge(const Image& radiance, const RenderTruth& truth, RenderRecord& record) {
+void judge(const Image& radiance, const RenderTruth& truth, PictureRecord& record) {
     std::vector<double> errors;
     std::array<double, 5> sums{}, counts{};
     double sum = 0, bias = 0;

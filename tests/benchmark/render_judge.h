@@ -22,6 +22,6 @@ RenderTruth find_truth(const AssembledScene& scene, const PictureOptions& pictur
                        Progress& progress);
 
 /// Sets the errors of a record.
-void judge(const Image& radiance, const RenderTruth& truth, RenderRecord& record);
+void judge(const Image& radiance, const RenderTruth& truth, PictureRecord& record);
 
 } // namespace kokage

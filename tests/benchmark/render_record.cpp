@@ -12,7 +12,7 @@ nlohmann::json number(const std::optional<double>& value) {
 
 } // namespace
 
-nlohmann::json to_json(const RenderRecord& record) {
+nlohmann::json to_json(const PictureRecord& record) {
     return {
         {"scene", record.scene},
         {"method", record.method},

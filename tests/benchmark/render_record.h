@@ -7,7 +7,7 @@
 
 namespace kokage {
 
-struct RenderRecord {
+struct PictureRecord {
     std::string scene;  ///< "close", "teapot", "five"
     std::string method; ///< "fast", "path-traced"
     std::string effort; ///< "error 0.05, 8 samples", "64 samples"
@@ -25,6 +25,6 @@ struct RenderRecord {
 };
 
 /// All fields; null where there is no figure.
-nlohmann::json to_json(const RenderRecord& record);
+nlohmann::json to_json(const PictureRecord& record);
 
 } // namespace kokage

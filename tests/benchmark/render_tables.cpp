@@ -11,20 +11,20 @@
 namespace kokage {
 namespace {
 
-using Records = std::vector<RenderRecord>;
+using Records = std::vector<PictureRecord>;
 
 std::vector<std::string> scenes_of(const Records& records) {
     std::vector<std::string> names;
-    for (const RenderRecord& r : records)
+    for (const PictureRecord& r : records)
         if (std::find(names.begin(), names.end(), r.scene) == names.end())
             names.push_back(r.scene);
     return names;
 }
 
 /// The cheapest fast picture that keeps the promised error; if there is none, the best.
-const RenderRecord* promised(const Records& records, const std::string& scene) {
-    const RenderRecord *best = nullptr, *cheapest = nullptr;
-    for (const RenderRecord& r : records) {
+const PictureRecord* promised(const Records& records, const std::string& scene) {
+    const PictureRecord *best = nullptr, *cheapest = nullptr;
+    for (const PictureRecord& r : records) {
         if (r.scene != scene || r.method != "fast" || !r.mean_error)
             continue;
         if (!best || *r.mean_error < *best->mean_error)
@@ -35,7 +35,7 @@ const RenderRecord* promised(const Records& records, const std::string& scene) {
     return cheapest ? cheapest : best;
 }
 
-std::string kinds_text(const RenderRecord& r) {
+std::string kinds_text(const PictureRecord& r) {
     std::string text;
     for (const auto& [kind, error] : r.mean_error_of)
         text += (text.empty() ? "" : ", ") + kind + " " + three_digits(error, 100);
@@ -44,15 +44,15 @@ std::string kinds_text(const RenderRecord& r) {
 
 } // namespace
 
-bool is_judged(const RenderRecord& r) {
+bool is_judged(const PictureRecord& r) {
     return r.mean_error && r.reference_noise && *r.reference_noise <= 0.2 * *r.mean_error;
 }
 
-std::optional<double> times_less_cpu(const Records& records, const RenderRecord& fast) {
+std::optional<double> times_less_cpu(const Records& records, const PictureRecord& fast) {
     if (!fast.mean_error || !(fast.cpu_seconds > 0))
         return std::nullopt;
     std::vector<EffortPoint> points;
-    for (const RenderRecord& r : records)
+    for (const PictureRecord& r : records)
         if (r.scene == fast.scene && r.method == "path-traced" && r.mean_error)
             points.push_back({r.cpu_seconds, *r.mean_error});
     const std::optional<double> cpu = cpu_at_error(points, *fast.mean_error);
@@ -62,7 +62,7 @@ std::optional<double> times_less_cpu(const Records& records, const RenderRecord&
 std::string render_figures(const Records& records) {
     std::string text = target_head();
     for (const std::string& scene : scenes_of(records)) {
-        const RenderRecord* fast = promised(records, scene);
+        const PictureRecord* fast = promised(records, scene);
         if (!fast)
             continue;
         const std::string what = scene + ", " + fast->effort + " (" + three_digits(fast->cpu_seconds) + " CPU-s)";
@@ -78,7 +78,7 @@ std::string render_tables(const Records& records) {
         markdown_row({"scene", "method", "effort", "CPU s", "transport", "solve", "render", "mean error %", "p95 %",
                       "bias %", "reference noise %", "times less CPU", "mean error by kind %"}) +
         markdown_row(std::vector<std::string>(13, "---"));
-    for (const RenderRecord& r : records)
+    for (const PictureRecord& r : records)
         text += markdown_row({r.scene, r.method, r.effort, three_digits(r.cpu_seconds),
                               three_digits(r.transport_cpu_seconds), three_digits(r.solve_cpu_seconds),
                               three_digits(r.render_cpu_seconds), three_digits(r.mean_error, 100),
@@ -94,7 +94,7 @@ std::string plot_render(const Records& records, const std::filesystem::path& fol
     std::string drawn;
     for (const std::string& scene : scenes_of(records)) {
         Curves curves;
-        for (const RenderRecord& r : records)
+        for (const PictureRecord& r : records)
             if (r.scene == scene && r.mean_error)
                 curves[r.method].emplace_back(r.cpu_seconds, 100 * *r.mean_error);
         for (auto& [name, points] : curves)

@@ -23,8 +23,8 @@ RenderTruth even_truth() {
     return truth;
 }
 
-RenderRecord record_of(const std::string& method, double cpu, double error) {
-    RenderRecord record;
+PictureRecord record_of(const std::string& method, double cpu, double error) {
+    PictureRecord record;
     record.scene = "close";
     record.method = method;
     record.cpu_seconds = cpu;
@@ -36,7 +36,7 @@ RenderRecord record_of(const std::string& method, double cpu, double error) {
 TEST(RenderJudge, TellsErrorsByWhatIsSeen) {
     Image picture(4, 1, 3);
     picture.pixels = {1.2f, 1.2f, 1.2f, 0.8f, 0.8f, 0.8f, 1, 1, 1, 1.4f, 1.4f, 1.4f};
-    RenderRecord record;
+    PictureRecord record;
     judge(picture, even_truth(), record);
     EXPECT_NEAR(*record.mean_error, 0.2, 1e-6);
     EXPECT_NEAR(*record.bias, 0.1, 1e-6);
@@ -54,9 +54,9 @@ TEST(RenderJudge, TellsErrorsByWhatIsSeen) {
 }
 
 TEST(RenderTables, TimesAreComparedAtEqualError) {
-    const RenderRecord fast = record_of("fast", 2, 0.05);
-    const std::vector<RenderRecord> records = {record_of("path-traced", 10, 0.1), record_of("path-traced", 40, 0.05),
-                                               record_of("path-traced", 160, 0.025), fast};
+    const PictureRecord fast = record_of("fast", 2, 0.05);
+    const std::vector<PictureRecord> records = {record_of("path-traced", 10, 0.1), record_of("path-traced", 40, 0.05),
+                                                record_of("path-traced", 160, 0.025), fast};
     EXPECT_NEAR(*times_less_cpu(records, fast), 20, 1e-6);
     EXPECT_FALSE(times_less_cpu(records, record_of("fast", 2, 0.01))); // nothing is extrapolated
     EXPECT_NE(render_figures(records).find("20.0×"), std::string::npos);
@@ -77,7 +77,7 @@ TEST(RenderJudge, TheTruthOfASmallSceneIsNearItsFastPicture) {
     EXPECT_NE(std::find(truth.kind.begin(), truth.kind.end(), 2), truth.kind.end());
     RenderOptions options;
     options.picture = description.picture;
-    RenderRecord record;
+    PictureRecord record;
     judge(render_scene(scene, options, silent_progress()).picture.radiance, truth, record);
     EXPECT_LT(*record.mean_error, 0.12);
     EXPECT_LT(std::abs(*record.bias), 0.05);
