@@ -79,6 +79,8 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
                 continue;
             RowHits hits(relief, frame, options, y);
             for (int x = 0; x < options.width; ++x) {
+                if (!is_traced(options, x, y))
+                    continue;
                 const PixelRays rays(frame, options, x, y);
                 const std::uint64_t seed = hash64(options.seed ^ hash64(rays.pixel()));
                 sum.clear();

@@ -71,9 +71,17 @@ struct PictureOptions {
     bool pixel_shadows = true;
     PictureGround ground = PictureGround::automatic;
     std::uint64_t seed = 1;
-    bool layers = false; ///< also Picture::layers
-    int every_row = 1;   ///< path tracing: rows between these stay black, so that a truth of part of a picture is cheap
+    bool layers = false;                 ///< also Picture::layers
+    int every_row = 1, every_column = 1; ///< path tracing: is_traced(); all other pixels stay black
 };
+
+/// So that a truth of some of a picture's pixels is cheap: every so manieth row, and in it every so manieth pixel,
+/// shifted from row to row.
+inline bool is_traced(const PictureOptions& options, int x, int y) {
+    const int rows = options.every_row > 1 ? options.every_row : 1,
+              columns = options.every_column > 1 ? options.every_column : 1;
+    return y % rows == 0 && (x + 3 * (y / rows)) % columns == 0;
+}
 
 /// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's
 /// eyes beside a grown tree, some ground in front, air around. It stands at `azimuth` (radians from +Z towards +X) seen

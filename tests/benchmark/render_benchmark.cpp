@@ -21,41 +21,42 @@ struct FastEffort {
 
 struct RenderPlan {
     int width, height;
-    int truth_samples, every_row; ///< a truth of all rows would take hours
+    int every_row, every_column; ///< of the truth: one of all pixels would take hours
+    std::uint64_t truth_samples;
     std::vector<FastEffort> fast;
     std::vector<int> traced; ///< samples a pixel
 };
 
 RenderPlan plan_of(bool quick) {
+    constexpr double kError = 0.15;
     if (quick)
-        return {240, 180, 4096, 12, {{0.1, 2}, {0.05, 4}, {0.05, 16}, {0.05, 32}}, {4, 16, 64, 256, 1024}};
-    return {480,
-            360,
-            8192,
-            12,
-            {{0.1, 2}, {0.1, 4}, {0.05, 8}, {0.05, 16}, {0.03, 32}, {0.03, 64}},
-            {4, 16, 64, 256, 1024}};
+        return {480, 360, 8, 7, 8192, {{kError, 4}, {kError, 16}, {kError, 32}, {kError, 64}}, {16, 64, 256, 1024}};
+    return {640,
+            480,
+            10,
+            10,
+            32768,
+            {{kError, 4}, {kError, 16}, {kError, 32}, {kError, 64}, {0.05, 64}},
+            {16, 64, 256, 1024, 4096}};
 }
 
-constexpr int kTimedSamples = 4; ///< of path tracing: its time grows in proportion
+/// Path tracing's time grows in proportion to its samples, once it has begun: two pictures of few tell.
+constexpr int kFewSamples = 2, kMoreSamples = 8;
+constexpr int kSplitSamples = 32; ///< of the fast pictures whose errors are split
 
 /// Measures one scene.
 class SceneMeasurement {
   public:
-    SceneMeasurement(const SceneDescription& description, const RenderPlan& plan, Progress& progress)
+    SceneMeasurement(const SceneDescription& description, const RenderPlan& plan, const TruthOptions& truth,
+                     Progress& progress)
         : plan_(plan), progress_(progress), scene_(assemble_scene(description, progress)), name_(description.name),
-          picture_(description.picture),
-          truth_(find_truth(scene_, picture_, plan.truth_samples, plan.every_row, progress)) {}
+          picture_(description.picture), truth_(find_truth(scene_, judged_pixels(), name_, truth, progress)) {}
 
-    const RenderTruth& truth() const { return truth_; }
+    const PictureTruth& truth() const { return truth_; }
 
     PictureRecord fast(const FastEffort& effort, Image* radiance) {
-        RenderOptions options;
-        options.picture = picture_;
-        options.picture.samples = effort.samples;
-        options.error = effort.error;
         const Stopwatch watch;
-        const RenderedScene rendered = render_scene(scene_, options, progress_);
+        const RenderedScene rendered = draw(effort, picture_.seed);
         PictureRecord record = record_of("fast", effort.samples);
         record.cpu_seconds = watch.cpu();
         record.error = effort.error;
@@ -67,21 +68,22 @@ class SceneMeasurement {
                 if (stage.name == stage_name)
                     record.*field = stage.cpu_seconds;
         judge(rendered.picture.radiance, truth_, record);
+        if (effort.samples == kSplitSamples)
+            split_errors(rendered.picture.radiance, draw(effort, picture_.seed + 1).picture.radiance, truth_, record);
         if (radiance)
             *radiance = rendered.picture.radiance;
         return record;
     }
 
     PictureRecord traced(int samples) {
-        if (!(traced_cpu_ > 0))
+        if (!(cpu_per_sample_ > 0))
             time_tracing();
-        PictureOptions rows = picture_;
-        rows.every_row = plan_.every_row;
         PictureRecord record = record_of("path-traced", samples);
         record.effort = std::to_string(samples) + " samples";
-        record.cpu_seconds = record.render_cpu_seconds = traced_cpu_ * samples / kTimedSamples;
-        record.note = "time of " + std::to_string(kTimedSamples) + " samples in proportion; errors of judged rows";
-        judge(trace(rows, samples), truth_, record);
+        record.cpu_seconds = record.render_cpu_seconds = cpu_before_ + cpu_per_sample_ * samples;
+        record.note = "time from those of " + std::to_string(kFewSamples) + " and " + std::to_string(kMoreSamples) +
+                      " samples; error of the judged pixels, traced with all samples";
+        judge(trace(judged_pixels(), samples), truth_, record);
         return record;
     }
 
@@ -96,6 +98,15 @@ class SceneMeasurement {
         return record;
     }
 
+    RenderedScene draw(const FastEffort& effort, std::uint64_t seed) {
+        RenderOptions options;
+        options.picture = picture_;
+        options.picture.samples = effort.samples;
+        options.picture.seed = seed;
+        options.error = effort.error;
+        return render_scene(scene_, options, progress_);
+    }
+
     Image trace(PictureOptions picture, int samples) {
         RenderOptions options;
         options.method = RenderMethod::path_traced;
@@ -104,10 +115,22 @@ class SceneMeasurement {
         return render_scene(scene_, options, progress_).picture.radiance;
     }
 
+    PictureOptions judged_pixels() const {
+        PictureOptions rows = picture_;
+        rows.every_row = plan_.every_row;
+        rows.every_column = plan_.every_column;
+        return rows;
+    }
+
     void time_tracing() {
-        const Stopwatch watch;
-        trace(picture_, kTimedSamples);
-        traced_cpu_ = watch.cpu();
+        const auto cpu_of = [&](int samples) {
+            const Stopwatch watch;
+            trace(picture_, samples);
+            return watch.cpu();
+        };
+        const double few = cpu_of(kFewSamples), more = cpu_of(kMoreSamples);
+        cpu_per_sample_ = (more - few) / (kMoreSamples - kFewSamples);
+        cpu_before_ = std::max(0.0, few - kFewSamples * cpu_per_sample_);
     }
 
     const RenderPlan& plan_;
@@ -115,8 +138,8 @@ class SceneMeasurement {
     const AssembledScene scene_;
     const std::string name_;
     const PictureOptions picture_;
-    const RenderTruth truth_;
-    double traced_cpu_ = 0;
+    const PictureTruth truth_;
+    double cpu_before_ = 0, cpu_per_sample_ = 0;
 };
 
 void tell(std::ostream& out, const PictureRecord& r) {
@@ -142,6 +165,7 @@ int run_render_benchmark(const RenderBenchmarkOptions& options, Progress& progre
         tell(out, record);
     };
     const auto write = [&] {
+        compare_times(records);
         nlohmann::json json = nlohmann::json::array();
         for (const PictureRecord& record : records)
             json.push_back(to_json(record));
@@ -149,13 +173,21 @@ int run_render_benchmark(const RenderBenchmarkOptions& options, Progress& progre
     };
     if (options.data_folder.empty())
         run.note("a turned pot stands in for the teapot; give --data or set KOKAGE_DATA");
-    run.note("the truth was traced on every " + std::to_string(plan.every_row) + "th row of " +
+    run.note("errors are judged on one of " + std::to_string(plan.every_row * plan.every_column) + " pixels of " +
              std::to_string(plan.width) + " x " + std::to_string(plan.height) +
-             " pixels, and there errors are judged; times are of whole pictures");
+             ", where the truth was traced; times are of whole pictures");
+    const TruthOptions truth = {
+        options.references_folder.empty() ? std::filesystem::path(KOKAGE_BENCHMARK_REFERENCES)
+                                          : options.references_folder,
+        options.cache_folder.empty() ? options.output_folder / "references" : options.cache_folder, plan.truth_samples};
     for (const SceneDescription& description :
          render_scenes(plan.width, plan.height, options.data_folder, options.output_folder)) {
         run.attempt(description.name, [&] {
-            SceneMeasurement measurement(description, plan, progress);
+            SceneMeasurement measurement(description, plan, truth, progress);
+            out << description.name << ": truth of " << measurement.truth().samples << " paths on each of "
+                << measurement.truth().pixels.size() << " pixels, "
+                << (measurement.truth().is_stored ? "stored" : "traced now") << "\n"
+                << std::flush;
             Image radiance;
             for (const int samples : plan.traced)
                 take(measurement.traced(samples));

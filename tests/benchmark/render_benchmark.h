@@ -10,7 +10,9 @@ namespace kokage {
 struct RenderBenchmarkOptions {
     std::filesystem::path output_folder = "."; ///< render.json, render.md, plots and pictures; made if missing
     std::filesystem::path data_folder{};       ///< with the teapot; empty: a turned pot stands in for it
-    bool quick = false;                        ///< small pictures: within three minutes on 2 cores
+    std::filesystem::path references_folder{}; ///< stored truths; empty = those of the source this was built from
+    std::filesystem::path cache_folder{};      ///< truths traced here; empty = output_folder/references
+    bool quick = false;                        ///< 480 x 360 pixels: within five minutes on 2 cores with stored truths
     int threads = 0;                           ///< 0 = all cores; CPU seconds are of all
     bool plots = true;
 };

@@ -12,6 +12,10 @@ nlohmann::json number(const std::optional<double>& value) {
 
 } // namespace
 
+bool is_judged(const PictureRecord& record) {
+    return record.mean_error && record.reference_noise && *record.reference_noise <= 0.2 * *record.mean_error;
+}
+
 nlohmann::json to_json(const PictureRecord& record) {
     return {
         {"scene", record.scene},
@@ -29,7 +33,12 @@ nlohmann::json to_json(const PictureRecord& record) {
         {"p95_error", number(record.p95_error)},
         {"bias", number(record.bias)},
         {"reference_noise", number(record.reference_noise)},
+        {"judged", is_judged(record)},
+        {"times_less_cpu_than_path_tracing", number(record.times_less_cpu_than_path_tracing)},
         {"mean_error_of", record.mean_error_of},
+        {"bias_of", record.bias_of},
+        {"systematic_error_of", record.systematic_error_of},
+        {"sampling_error_of", record.sampling_error_of},
         {"share_of", record.share_of},
         {"note", record.note},
     };

@@ -10,7 +10,7 @@ namespace kokage {
 struct PictureRecord {
     std::string scene;  ///< "close", "teapot", "five"
     std::string method; ///< "fast", "path-traced"
-    std::string effort; ///< "error 0.05, 8 samples", "64 samples"
+    std::string effort; ///< "error 0.15, 16 samples", "64 samples"
     int width = 0, height = 0, samples = 0;
     std::optional<double> error; ///< asked of the leaves' light: fast
     double cpu_seconds = 0;      ///< of the whole picture: everything after loading and growing
@@ -19,12 +19,19 @@ struct PictureRecord {
     std::optional<double> mean_error, p95_error;
     std::optional<double> bias;            ///< of x - ref over the mean of ref
     std::optional<double> reference_noise; ///< mean error of the reference itself, from its two independent halves
-    std::map<std::string, double> mean_error_of; ///< by what the pixel shows: leaf, bark, object, ground, edge
-    std::map<std::string, double> share_of;      ///< of the judged pixels
+    std::map<std::string, double> mean_error_of, bias_of; ///< by what the pixel shows: leaf, bark, object, ground, edge
+    std::map<std::string, double> share_of;               ///< of the judged pixels
+    /// Root mean squares over the mean of ref: what stays with any number of samples, and what goes.
+    std::map<std::string, double> systematic_error_of, sampling_error_of;
+    /// fast: CPU of path tracing to the same error over this one's.
+    std::optional<double> times_less_cpu_than_path_tracing;
     std::string note;
 };
 
-/// All fields; null where there is no figure.
+/// Error judged by a truth whose noise is at most a fifth of it.
+bool is_judged(const PictureRecord& record);
+
+/// All fields, and "judged"; null where there is no figure.
 nlohmann::json to_json(const PictureRecord& record);
 
 } // namespace kokage

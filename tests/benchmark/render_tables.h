@@ -7,12 +7,12 @@
 
 namespace kokage {
 
-/// CPU of path tracing over that of the fast way at the fast picture's error, interpolated in log-log; empty where that
-/// error lies outside of what was traced, or the truth is too noisy to judge it.
+/// CPU of path tracing over that of the fast way at the fast picture's error, interpolated in log-log between the
+/// sample counts that were traced and judged; beyond them path tracing's error is taken to fall with the root of its
+/// time. Empty where the truth is too noisy to judge the fast picture, or nothing was traced.
 std::optional<double> times_less_cpu(const std::vector<PictureRecord>& records, const PictureRecord& fast);
-
-/// Error judged by a truth whose noise is at most a fifth of it.
-bool is_judged(const PictureRecord& record);
+/// Sets it in all fast records.
+void compare_times(std::vector<PictureRecord>& records);
 
 std::string render_figures(const std::vector<PictureRecord>& records); ///< beside the promises
 std::string render_tables(const std::vector<PictureRecord>& records);  ///< all of them
