@@ -44,13 +44,21 @@ Backdrop::Backdrop(const Environment& environment) : environment_(environment) {
         }
         if (regions_.empty())
             regions_ = Image(image.width, image.height, 3);
+        const auto add = [&](int x, int y, const glm::vec3& radiance) {
+            for (int c = 0; c < 3; ++c)
+                regions_.at(x, y)[c] += radiance[c];
+        };
+        for (const DistantLight::Pixel& pixel : light.pixels)
+            if (pixel.x >= 0 && pixel.x < image.width && pixel.y >= 0 && pixel.y < image.height)
+                add(pixel.x, pixel.y, pixel.radiance);
+        if (!light.pixels.empty())
+            continue;
         for (const DistantLight::Texel& texel : light.texels) {
             const glm::vec2 uv = lat_long_from_direction(texel.direction);
             const int x = std::clamp(int(uv.x * float(image.width)), 0, image.width - 1);
             const int y = std::clamp(int(uv.y * float(image.height)), 0, image.height - 1);
             const auto solid_angle = float(pixel_solid_angle(y, image.width, image.height));
-            for (int c = 0; c < 3; ++c)
-                regions_.at(x, y)[c] += texel.irradiance[std::size_t(c)] / solid_angle;
+            add(x, y, texel.irradiance / solid_angle);
         }
     }
 }

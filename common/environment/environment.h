@@ -17,12 +17,19 @@ struct DistantLight {
         /// Of a cone with the solid angle of the pixel, or of the neighbouring pixels that it stands for.
         float half_angle = 0;
     };
+    /// A pixel of the image that the region was cut from.
+    struct Pixel {
+        int x, y;
+        glm::vec3 radiance; ///< that was taken from it
+    };
     std::string name;             ///< "sun", "region 3 of 12 (u 0.41, v 0.22)", ...
     glm::vec3 direction{0, 1, 0}; ///< towards the light; a region's energy-weighted mean
     float half_angle = 0; ///< radians; of the disc, or of the smallest cone around `direction` that holds the region
     /// Of a disc: on an unshadowed surface that faces it. Of a region: the sum of its texels, radiance x solid angle.
     glm::vec3 irradiance{0.f};
     std::vector<Texel> texels; ///< empty for a disc
+    /// Of a region, for who looks at it: each of its pixels, where texels stand for several. Empty: see the texels.
+    std::vector<Pixel> pixels;
 };
 
 /// A light at a place. Irradiance at distance d on a facing surface = intensity / d^2.

@@ -109,9 +109,15 @@ DistantLight make_light(std::vector<Piece> pieces, int max_texels) {
     return light;
 }
 
-/// Cuts a region out of the remainder and returns what was cut.
-std::vector<Piece> cut_out(Image& remainder, const LightRegion& region, const glm::dvec3& fill) {
+/// What was cut out of an image, as directions and as pixels.
+struct Cut {
     std::vector<Piece> pieces;
+    std::vector<DistantLight::Pixel> pixels;
+};
+
+/// Cuts a region out of the remainder and returns what was cut.
+Cut cut_out(Image& remainder, const LightRegion& region, const glm::dvec3& fill) {
+    Cut cut;
     for (const PixelRun& run : region.runs) {
         const double solid_angle = pixel_solid_angle(run.y, remainder.width, remainder.height);
         for (int x = run.begin; x < run.end; ++x) {
@@ -120,12 +126,14 @@ std::vector<Piece> cut_out(Image& remainder, const LightRegion& region, const gl
                              left(glm::min(glm::vec3(fill), glm::vec3(color)));
             for (int c = 0; c < 3; ++c)
                 remainder.at(x, run.y)[c] = float(left[glm::length_t(c)]);
-            if (color != left)
-                pieces.push_back({pixel_direction(x, run.y, remainder.width, remainder.height),
+            if (color == left)
+                continue;
+            cut.pieces.push_back({pixel_direction(x, run.y, remainder.width, remainder.height),
                                   (color - left) * solid_angle, solid_angle});
+            cut.pixels.push_back({x, run.y, glm::vec3(color - left)});
         }
     }
-    return pieces;
+    return cut;
 }
 
 Image first_three_channels(const Image& image) {
@@ -197,9 +205,11 @@ LightSplit split_lights(const Image& image, const LightSplitting& splitting) {
         fills.push_back(surrounding_color(split.remainder, light.region, light.threshold, bright.background_color,
                                           splitting.gap_degrees));
     for (std::size_t i = 0; i < found.size(); ++i) {
-        std::vector<Piece> pieces = cut_out(split.remainder, found[i].region, fills[i]);
-        if (!pieces.empty())
-            split.lights.push_back(make_light(std::move(pieces), std::max(splitting.max_texels, 1)));
+        Cut cut = cut_out(split.remainder, found[i].region, fills[i]);
+        if (cut.pieces.empty())
+            continue;
+        split.lights.push_back(make_light(std::move(cut.pieces), std::max(splitting.max_texels, 1)));
+        split.lights.back().pixels = std::move(cut.pixels);
     }
     for (std::size_t i = 0; i < split.lights.size(); ++i)
         split.lights[i].name = region_name(i + 1, split.lights.size(), split.lights[i].direction);

@@ -43,6 +43,13 @@ void expect_sound(const Image& image, const LightSplit& split, int max_lights = 
                 ASSERT_GE(split.remainder.at(x, y)[c], 0);
                 ASSERT_LE(split.remainder.at(x, y)[c], image.at(x, y)[c]);
             }
+    Image whole = split.remainder;
+    for (const DistantLight& light : split.lights)
+        for (const DistantLight::Pixel& pixel : light.pixels)
+            for (int c = 0; c < 3; ++c)
+                whole.at(pixel.x, pixel.y)[c] += pixel.radiance[c];
+    for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+        ASSERT_NEAR(whole.pixels[i], image.pixels[i], 1e-6f * image.pixels[i]);
     for (const DistantLight& light : split.lights) {
         EXPECT_NEAR(glm::length(light.direction), 1, 1e-5);
         EXPECT_FALSE(light.texels.empty());

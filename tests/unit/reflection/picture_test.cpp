@@ -1,3 +1,4 @@
+#include "common/environment/load_environment.h"
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "picture_scenes.h"
@@ -246,6 +247,31 @@ TEST(Picture, BrightRegionsAreSeenWhereTheyWereCutOut) {
                 double(backdrop.seen(direction_from_lat_long({(float(x) + 0.5f) / 256, (float(y) + 0.5f) / 128})).g) *
                 pixel_solid_angle(y, 256, 128);
     EXPECT_NEAR(sum, double(region.irradiance.g), 0.01 * double(region.irradiance.g));
+}
+
+TEST(Picture, LargeLampsAreSeenWholeThoughTheirPixelsAreMerged) {
+    Image image(256, 128, 3);
+    std::fill(image.pixels.begin(), image.pixels.end(), 0.01f);
+    const auto in_lamp = [](int x, int y) { return x >= 100 && x < 130 && y >= 40 && y < 60; };
+    for (int y = 0; y < 128; ++y)
+        for (int x = 0; x < 256; ++x)
+            if (in_lamp(x, y))
+                std::fill_n(image.at(x, y), 3, 7.f);
+    EnvironmentReport report;
+    const Environment environment = environment_from_image(image, "lamp", report);
+    ASSERT_EQ(environment.distant_lights.size(), 1u);
+    EXPECT_LT(environment.distant_lights[0].texels.size(), 100u);
+    const Backdrop backdrop(environment);
+    for (int y = 34; y < 66; ++y) // the spline reaches two pixels over the rim
+        for (int x = 94; x < 136; ++x)
+            if (in_lamp(x - 2, y - 2) && in_lamp(x + 2, y + 2)) {
+                const glm::vec2 uv((float(x) + 0.5f) / 256, (float(y) + 0.5f) / 128);
+                EXPECT_NEAR(backdrop.seen(direction_from_lat_long(uv)).g, 7.f, 0.01f) << x << ", " << y;
+            } else if (!in_lamp(x - 2, y - 2) && !in_lamp(x + 2, y + 2) && !in_lamp(x - 2, y + 2) &&
+                       !in_lamp(x + 2, y - 2)) {
+                const glm::vec2 uv((float(x) + 0.5f) / 256, (float(y) + 0.5f) / 128);
+                EXPECT_NEAR(backdrop.seen(direction_from_lat_long(uv)).g, 0.01f, 1e-4f) << x << ", " << y;
+            }
 }
 
 TEST(Picture, IsTheSameForAnyNumberOfThreads) {

@@ -170,9 +170,10 @@ TEST(SpectralBaker, ASunIsALobeAndNothingIsNegative) {
 
 TEST(SpectralBaker, LightsOfTheUserAreFilteredToo) {
     Environment environment = surroundings(colour_pattern(128, 64));
-    environment.distant_lights.push_back({"sun", glm::normalize(glm::vec3(1, 2, 3)), 0.00465f, glm::vec3(3, 2, 1), {}});
-    environment.distant_lights.push_back({"lamp", glm::normalize(glm::vec3(-1, 1, 0)), 0.3f, glm::vec3(1), {}});
-    environment.distant_lights.push_back({"star", glm::vec3(0, -1, 0), 0, glm::vec3(0.2f), {}});
+    environment.distant_lights.push_back(
+        {"sun", glm::normalize(glm::vec3(1, 2, 3)), 0.00465f, glm::vec3(3, 2, 1), {}, {}});
+    environment.distant_lights.push_back({"lamp", glm::normalize(glm::vec3(-1, 1, 0)), 0.3f, glm::vec3(1), {}, {}});
+    environment.distant_lights.push_back({"star", glm::vec3(0, -1, 0), 0, glm::vec3(0.2f), {}, {}});
     for (const LobeKind kind : {LobeKind::phong, LobeKind::ggx}) {
         const TexelLayout layout =
             kind == LobeKind::phong ? scattered(kind, 1, 500, 500) : scattered(kind, 0.3, 1, 500);
