@@ -28,7 +28,8 @@ struct ShadingOptions {
     int max_bounces =
         0; ///< scatterings between light and leaf; 0 = until what is missing is small against the asked error
     GatherRule gather = GatherRule::cosine;
-    bool for_hosts = false; ///< also what only hosts read: bent normals, light maps
+    bool merge_weak_lights = true; ///< bundles: lights that together give a fiftieth of the asked error or less
+    bool for_hosts = false;        ///< also what only hosts read: bent normals, light maps
     std::uint64_t seed = 1;
 };
 

@@ -11,33 +11,17 @@ namespace {
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kLobePattern = 0x9e3779b9u; ///< makes numbers of its own of a pixel's
 
-/// Of all glossy looks; least > most where there is none.
-RoughnessBounds roughness_of(const ShadedScene& scene) {
-    RoughnessBounds all;
-    for (const SurfaceLook& look : scene.looks) {
-        if (look.gloss.is_matt())
-            continue;
-        const RoughnessBounds range = roughness_bounds(look.gloss);
-        all.least = std::min(all.least, range.least);
-        all.most = std::max(all.most, range.most);
-    }
-    return all;
-}
-
 } // namespace
 
-GlossShading::GlossShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                           const SurfaceShading& surfaces, const GroundLook& ground, const GroundShading& ground_light,
-                           Progress& progress, WorkReport& report)
+GlossShading::GlossShading(const RayQueries& queries, const Environment& environment, const SurfaceShading& surfaces,
+                           const GroundLook& ground, const GroundShading& ground_light,
+                           const std::optional<RoughnessBounds>& lobes, Progress& progress, WorkReport& report)
     : queries_(queries), environment_(environment), surfaces_(surfaces), ground_(ground), ground_light_(ground_light) {
-    const RoughnessBounds range = roughness_of(scene);
-    if (range.least > range.most) {
-        report.skips.push_back({"reflection map", "nothing glossy is in the scene", "one bake of the surroundings"});
+    if (!lobes)
         return;
-    }
     // The horizon's correction reads narrower lobes than the surface's own.
-    remainder_.emplace(environment, std::clamp(0.4f * range.least, kLeastRoughness, 1.f),
-                       std::clamp(range.most, kLeastRoughness, 1.f), progress, report);
+    remainder_.emplace(environment, std::clamp(0.4f * lobes->least, kLeastRoughness, 1.f),
+                       std::clamp(lobes->most, kLeastRoughness, 1.f), progress, report);
 }
 
 glm::vec3 GlossShading::seen_along(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,

@@ -14,11 +14,11 @@ namespace kokage {
 /// carries what varies little, rays only the difference, and without anything in the way there is no noise.
 class GlossShading {
   public:
-    /// Bakes what the scene's looks need, and says in the report what that was or that it was skipped. All must outlive
-    /// it.
-    GlossShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                 const SurfaceShading& surfaces, const GroundLook& ground, const GroundShading& ground_light,
-                 Progress& progress, WorkReport& report);
+    /// Bakes `lobes` (gloss_in_view.h; empty: all that is in view is matt), and says in the report what that was. All
+    /// must outlive it.
+    GlossShading(const RayQueries& queries, const Environment& environment, const SurfaceShading& surfaces,
+                 const GroundLook& ground, const GroundShading& ground_light,
+                 const std::optional<RoughnessBounds>& lobes, Progress& progress, WorkReport& report);
 
     /// K times the light through the lobe. A single ray's answer may be negative; their mean is not.
     glm::vec3 radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,

@@ -1,10 +1,13 @@
 #include "reflection/glossy_light.h"
 #include "common/directions/lobes.h"
 #include "common/environment/lat_long.h"
+#include "common/services/count_text.h"
 #include "reflection/maps/make_baker.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
 
 namespace kokage {
 namespace {
@@ -17,6 +20,33 @@ ShellSettings shell_settings(float least_roughness, float most_roughness) {
     settings.filter = TexelFilter::cubic;
     settings.format = TexelFormat::float_rgb;
     return settings;
+}
+
+std::size_t texels_to_bake(const ShellSettings& settings) {
+    std::size_t texels = 0;
+    for (const ShellMap::Shell& shell : ShellMap::plan(settings)) {
+        const auto edge = std::size_t(shell.resolution + 2 * ShellMap::baked_border(settings.filter));
+        texels += 6 * edge * edge;
+    }
+    return texels;
+}
+
+/// Against a map of all that surfaces usually have; narrower lobes than that would take gigabytes.
+void report_range(float least_roughness, float most_roughness, WorkReport& report) {
+    constexpr float kUsual = 0.1f;
+    const std::size_t part = texels_to_bake(shell_settings(least_roughness, most_roughness)),
+                      all = texels_to_bake(shell_settings(std::min(least_roughness, kUsual), 1));
+    if (part >= all)
+        return;
+    const auto range = [](float least, float most) {
+        std::array<char, 32> text;
+        std::snprintf(text.data(), text.size(), "%.2g to %.2g", double(least), double(most));
+        return std::string(text.data());
+    };
+    report.skips.push_back({"reflection map of other roughness",
+                            "what is in view needs lobes of " + range(least_roughness, most_roughness),
+                            count_text(all - part) + " of " + count_text(all) + " texels of " +
+                                range(std::min(least_roughness, kUsual), 1)});
 }
 
 } // namespace
@@ -48,6 +78,7 @@ glm::vec3 wide_lights_in(const Environment& environment, const glm::vec3& direct
 GlossyRemainder::GlossyRemainder(const Environment& environment, float least_roughness, float most_roughness,
                                  Progress& progress, WorkReport& report)
     : map_(shell_settings(least_roughness, most_roughness)), horizon_(LobeKind::ggx) {
+    report_range(least_roughness, most_roughness, report);
     Environment remainder;
     remainder.remainder = with_square_pixels(environment.remainder);
     const std::unique_ptr<Baker> baker =

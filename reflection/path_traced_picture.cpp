@@ -68,7 +68,8 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 
     Picture picture = empty_picture(options);
-    const ReliefSurfaces relief(scene, queries, environment, frame, progress, picture.report);
+    const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress,
+                                picture.report);
     const auto samples = std::uint32_t(options.samples);
     progress.begin("tracing paths", std::size_t(options.height));
     parallel_blocks(std::size_t(options.height), 1, [&](std::size_t begin, std::size_t end) {

@@ -63,6 +63,15 @@ enum class PictureGround {
     none ///< nothing but the scene's own ground
 };
 
+/// What render_picture does not do where it does not show. Each can be switched off, so that what it saves and what it
+/// changes can be measured.
+struct PictureSkips {
+    bool bake_of_matt = true;      ///< a reflection map where nothing glossy is in view
+    bool lobes_out_of_view = true; ///< roughness in reflection maps that nothing in view has
+    bool thin_relief = true;       ///< relief_strength: relief whose depth covers less than a quarter of a pixel (path
+                                   ///< tracing leaves it out as well)
+};
+
 struct PictureOptions {
     int width = 1280, height = 960;
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
@@ -73,6 +82,7 @@ struct PictureOptions {
     std::uint64_t seed = 1;
     bool layers = false;                 ///< also Picture::layers
     int every_row = 1, every_column = 1; ///< path tracing: is_traced(); all other pixels stay black
+    PictureSkips skips;
 };
 
 /// So that a truth of some of a picture's pixels is cheap: every so manieth row, and in it every so manieth pixel,

@@ -1,6 +1,7 @@
 #include "reflection/relief_surfaces.h"
 #include "reflection/relief/surface_entries.h"
 #include "reflection/scene_relief.h"
+#include "reflection/view_frustum.h"
 
 #include <algorithm>
 #include <array>
@@ -36,9 +37,9 @@ struct ReliefSurfaces::Entry {
 };
 
 ReliefSurfaces::ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                               const CameraFrame& frame, Progress& progress, WorkReport& report)
-    : scene_(scene), queries_(queries), eye_(frame.position), pixel_(pixel_size(frame)),
-      relief_(make_scene_relief(scene, frame, progress, report)) {
+                               const CameraFrame& frame, bool skip_thin, Progress& progress, WorkReport& report)
+    : scene_(scene), queries_(queries), eye_(frame.position), pixel_(pixel_size(frame)), skip_thin_(skip_thin),
+      relief_(make_scene_relief(scene, frame, skip_thin, progress, report)) {
     if (relief_)
         open_.emplace(environment, scene.patches->ground);
 }
@@ -49,6 +50,8 @@ float ReliefSurfaces::strength_at(const Entry& entry) const {
     const ReliefShell::Prism& prism = relief_->shell.prisms[entry.prism];
     if (prism.is_solid)
         return 0;
+    if (!skip_thin_)
+        return 1;
     const glm::vec3 of_triangle{1 - entry.hit.barycentric.x - entry.hit.barycentric.y, entry.hit.barycentric};
     const glm::vec3 weights(of_triangle[prism.corners[0]], of_triangle[prism.corners[1]],
                             of_triangle[prism.corners[2]]);

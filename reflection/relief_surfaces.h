@@ -43,9 +43,10 @@ struct CameraHit {
 class ReliefSurfaces {
   public:
     /// Makes what relief needs (scene_relief.h), if a camera of this frame may see any: the report tells. Both scene
-    /// and queries must outlive it. Throws InputError, Stopped.
+    /// and queries must outlive it. `skip_thin`: relief fades out below three quarters of a pixel (relief_strength) and
+    /// is left out below a quarter; else it is traced in full wherever it is in view. Throws InputError, Stopped.
     ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
-                   const CameraFrame& frame, Progress& progress, WorkReport& report);
+                   const CameraFrame& frame, bool skip_thin, Progress& progress, WorkReport& report);
     ~ReliefSurfaces();
     ReliefSurfaces(const ReliefSurfaces&) = delete;
     ReliefSurfaces& operator=(const ReliefSurfaces&) = delete;
@@ -75,6 +76,7 @@ class ReliefSurfaces {
     const RayQueries& queries_;
     glm::vec3 eye_;
     float pixel_;
+    bool skip_thin_;
     std::unique_ptr<const SceneRelief> relief_; ///< null: there is none in view
     std::optional<OpenIrradiance> open_;        ///< empty likewise
 };

@@ -2,6 +2,7 @@
 #include "common/services/parallel.h"
 #include "reflection/backdrop.h"
 #include "reflection/camera_rays.h"
+#include "reflection/gloss_in_view.h"
 #include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
 #include "reflection/relief_surfaces.h"
@@ -205,8 +206,9 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const GroundLook ground(scene, environment, backdrop, camera, options);
     WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    const GlossShading gloss(scene, queries, environment, surfaces, ground, ground_light, progress, report);
-    const ReliefSurfaces relief(scene, queries, environment, frame, progress, report);
+    const GlossShading gloss(queries, environment, surfaces, ground, ground_light,
+                             lobes_to_bake(scene, frame, options.skips, report), progress, report);
+    const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress, report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss, relief};
 
     Picture picture = PictureDrawing(renderer, frame, options).draw(progress);

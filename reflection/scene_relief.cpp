@@ -1,7 +1,9 @@
 #include "reflection/scene_relief.h"
+#include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/random.h"
 #include "common/services/stopwatch.h"
+#include "reflection/view_frustum.h"
 
 #include <algorithm>
 #include <array>
@@ -55,11 +57,7 @@ void check(const ShadedScene& scene) {
 class TrianglesInView {
   public:
     TrianglesInView(const ShadedScene& scene, const CameraFrame& frame)
-        : scene_(scene), frame_(frame), pixel_(pixel_size(frame)) {
-        const float right = glm::length(frame.right), up = glm::length(frame.up);
-        sides_ = {
-            {{frame.right / right, right}, {-frame.right / right, right}, {frame.up / up, up}, {-frame.up / up, up}}};
-    }
+        : scene_(scene), position_(frame.position), view_(frame), pixel_(pixel_size(frame)) {}
 
     /// 0: another material, or out of view; else the most pixels that its depth may cover.
     float pixels(std::size_t triangle) const {
@@ -73,41 +71,28 @@ class TrianglesInView {
         float radius = 0;
         for (int k = 0; k < 3; ++k)
             radius = std::max(radius, glm::distance(centre, patches.positions[corners[k]]));
-        if (!may_see(centre, radius + 4 * look.relief.depth_m))
+        if (!view_.may_see(centre, radius + 4 * look.relief.depth_m))
             return 0;
-        const float distance = glm::distance(centre, frame_.position) - radius;
+        const float distance = glm::distance(centre, position_) - radius;
         return look.relief.depth_m / std::max(distance * pixel_, 1e-30f);
     }
 
   private:
-    bool may_see(const glm::vec3& centre, float radius) const {
-        const glm::vec3 offset = centre - frame_.position;
-        const float ahead = glm::dot(offset, frame_.forward);
-        if (ahead < -radius)
-            return false;
-        // The pixel filter reaches a pixel and a half beyond the picture.
-        const float reach = radius + 3 * pixel_ * std::max(ahead, 0.f);
-        for (const auto& [axis, half] : sides_)
-            if ((glm::dot(offset, axis) - half * ahead) / std::sqrt(1 + half * half) > reach)
-                return false;
-        return true;
-    }
-
     const ShadedScene& scene_;
-    const CameraFrame& frame_;
+    const glm::vec3 position_;
+    const ViewFrustum view_;
     float pixel_;
-    std::array<std::pair<glm::vec3, float>, 4> sides_;
 };
 
 /// The triangles of the shell: those in view, and bark around them.
 struct Choice {
     std::vector<std::uint32_t> triangles;
-    std::size_t solid = 0; ///< of them
-    float most_pixels = 0; ///< over all in view, whether chosen or not
-    std::size_t in_view = 0;
+    std::size_t solid = 0;             ///< of them
+    float most_pixels = 0;             ///< over all in view, whether chosen or not
+    std::size_t in_view = 0, thin = 0; ///< of these, less than what is seen
 };
 
-Choice choose(const ShadedScene& scene, const CameraFrame& frame) {
+Choice choose(const ShadedScene& scene, const CameraFrame& frame, float least_pixels) {
     const PatchScene& patches = *scene.patches;
     const TrianglesInView view(scene, frame);
     Choice choice;
@@ -117,7 +102,8 @@ Choice choose(const ShadedScene& scene, const CameraFrame& frame) {
         const float pixels = view.pixels(t);
         choice.in_view += pixels > 0;
         choice.most_pixels = std::max(choice.most_pixels, pixels);
-        chosen[t] = pixels > kLeastPixels;
+        chosen[t] = pixels > least_pixels;
+        choice.thin += pixels > 0 && !chosen[t];
         for (int k = 0; k < 3 && chosen[t]; ++k)
             places.insert(patches.positions[patches.triangles[t][k]]);
     }
@@ -167,13 +153,13 @@ bool same(const LookRelief& a, const LookRelief& b) {
 }
 
 /// The layers of the chosen triangles; `reliefs`: of layers 1, 2, ...
-ReliefLayers find_layers(const ShadedScene& scene, const CameraFrame& frame, const Choice& choice,
+ReliefLayers find_layers(const ShadedScene& scene, const CameraFrame& frame, const Choice& choice, float least_pixels,
                          std::vector<LookRelief>& reliefs) {
     const TrianglesInView view(scene, frame);
     ReliefLayers layers;
     layers.depths.push_back({0, 0, 0});
     for (const std::uint32_t t : choice.triangles) {
-        if (!(view.pixels(t) > kLeastPixels)) {
+        if (!(view.pixels(t) > least_pixels)) {
             layers.of_triangle.push_back(0);
             continue;
         }
@@ -218,10 +204,6 @@ ReliefMap make_map(const LookRelief& relief, float tile_m, Progress& progress) {
 
 } // namespace
 
-float pixel_size(const CameraFrame& frame) {
-    return 2 * glm::length(frame.up) / float(frame.height);
-}
-
 std::size_t SceneRelief::bytes() const {
     std::size_t sum = shell.bytes() + frames.frames.size() * sizeof(TangentFrame) +
                       frames.corners.size() * sizeof(glm::uvec3) +
@@ -231,8 +213,8 @@ std::size_t SceneRelief::bytes() const {
     return sum;
 }
 
-std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const CameraFrame& frame, Progress& progress,
-                                               WorkReport& report) {
+std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const CameraFrame& frame, bool skip_thin,
+                                               Progress& progress, WorkReport& report) {
     check(scene);
     const auto wearers = std::count_if(scene.looks.begin(), scene.looks.end(), has_relief);
     if (wearers == 0) {
@@ -240,7 +222,8 @@ std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const C
         return nullptr;
     }
     const Stopwatch watch;
-    const Choice choice = choose(scene, frame);
+    const float least_pixels = skip_thin ? kLeastPixels : 0;
+    const Choice choice = choose(scene, frame, least_pixels);
     if (choice.triangles.empty()) {
         const std::string cost = "a shell below surfaces in view (about 1 s CPU and 70 MB a million triangles), bounds "
                                  "and openness of " +
@@ -254,11 +237,16 @@ std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const C
                                 cost});
         return nullptr;
     }
+    if (choice.thin > 0)
+        report.skips.push_back(
+            {"relief of " + count_text(choice.thin) + " of " + count_text(choice.in_view) + " triangles in view",
+             "its depth covers less than a quarter of a pixel there",
+             "their part of the shell, and a second ray into each pixel of them"});
     progress.begin("preparing relief", 1);
     auto result = std::make_unique<SceneRelief>();
     const MeshPart part(scene, choice.triangles);
     std::vector<LookRelief> reliefs;
-    const ReliefLayers layers = find_layers(scene, frame, choice, reliefs);
+    const ReliefLayers layers = find_layers(scene, frame, choice, least_pixels, reliefs);
     result->shell = make_relief_shell(part.mesh(), layers, "picture");
     result->frames = make_tangent_frames(part.mesh());
     std::vector<SurfaceReliefLayer> traced(1);

@@ -33,12 +33,9 @@ struct SceneRelief {
 };
 
 /// Relief of triangles of which `frame` may see a quarter of a pixel of depth, with those of other bark that adjoin
-/// them, as solid. Null where there are none; the report tells why, or what was made. Throws InputError where a look's
-/// relief can't be traced.
-std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const CameraFrame& frame, Progress& progress,
-                                               WorkReport& report);
-
-/// How large a pixel is at unit distance in the middle of the picture.
-float pixel_size(const CameraFrame& frame);
+/// them, as solid. Null where there are none; the report tells why, or what was made. `skip_thin` false: of all
+/// triangles in view. Throws InputError where a look's relief can't be traced.
+std::unique_ptr<SceneRelief> make_scene_relief(const ShadedScene& scene, const CameraFrame& frame, bool skip_thin,
+                                               Progress& progress, WorkReport& report);
 
 } // namespace kokage

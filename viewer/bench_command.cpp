@@ -53,7 +53,8 @@ int run_benchmarks(const BenchOptions& options, const CommandContext& context, s
         failures += run_render_benchmark({.output_folder = common.output_folder,
                                           .data_folder = common.data_folder,
                                           .quick = common.quick,
-                                          .threads = context.threads},
+                                          .threads = context.threads,
+                                          .experiments = options.experiments},
                                          *context.progress, out);
     return failures;
 }
@@ -91,14 +92,15 @@ Command bench_command(CLI::App& program) {
     app->add_flag(
         "--quick", common.quick,
         "foliage: the scenes of 30,000 leaves alone, within two minutes with stored references; trees: two "
-        "species; reflection, relief: smaller samples, within two minutes; render: small pictures, within three");
+        "species; reflection, relief: smaller samples, within two minutes; render: smaller pictures, fewer efforts");
     app->add_option("--data", common.data_folder,
                     "foliage, reflection, relief, render: folder with env (lat-long images), objects and textures")
         ->type_name("FOLDER")
         ->envname("KOKAGE_DATA");
-    app->add_option("--experiment", options->experiments,
-                    "only these, separated by commas (otherwise all): reflection: " +
-                        joined(reflection_experiment_names()) + "; relief: " + joined(relief_experiment_names()))
+    app->add_option(
+           "--experiment", options->experiments,
+           "only these, separated by commas (otherwise all): reflection: " + joined(reflection_experiment_names()) +
+               "; relief: " + joined(relief_experiment_names()) + "; render: " + joined(render_experiment_names()))
         ->type_name("NAME")
         ->delimiter(',');
     app->add_option("--reference-paths", common.reference_paths,
@@ -112,9 +114,9 @@ Command bench_command(CLI::App& program) {
                     what != "render" && what != "all")
                     throw InputError("there is no benchmark '" + what +
                                      "'; there are: foliage, trees, reflection, relief, render, all");
-                if (!options->experiments.empty() && what != "reflection" && what != "relief")
-                    throw InputError("--experiment: only the benchmarks reflection and relief are made of experiments "
-                                     "to choose from");
+                if (!options->experiments.empty() && what != "reflection" && what != "relief" && what != "render")
+                    throw InputError("--experiment: only the benchmarks reflection, relief and render are made of "
+                                     "experiments to choose from");
                 options->foliage.threads = context.threads;
                 NoText nothing;
                 std::ostream silent(&nothing);

@@ -140,7 +140,8 @@ BundlesTransport::Lit BundlesTransport::light(const Environment& environment, Pr
         progress.throw_if_stopped();
     };
     Lit lit;
-    lit.beams = drawn_->light(environment, 0.02 * options_.error, options_.seed, progress, report);
+    lit.beams = drawn_->light(environment, options_.merge_weak_lights ? 0.02 * options_.error : 0, options_.seed,
+                              progress, report);
     stage("lights");
     SkyLight sky =
         gather_sky(scene_, drawn_->facets(), drawn_->transport(), environment.remainder, lit.beams.open_ground);

@@ -4,6 +4,8 @@
 
 #include <filesystem>
 #include <iosfwd>
+#include <string>
+#include <vector>
 
 namespace kokage {
 
@@ -15,10 +17,15 @@ struct RenderBenchmarkOptions {
     bool quick = false;                        ///< 480 x 360 pixels: within five minutes on 2 cores with stored truths
     int threads = 0;                           ///< 0 = all cores; CPU seconds are of all
     bool plots = true;
+    std::vector<std::string> experiments{}; ///< of render_experiment_names(); empty = all
 };
 
+/// "pictures" (error against time), "skips" (what pictures leave out, with and without).
+std::vector<std::string> render_experiment_names();
+
 /// Measures, and writes after every scene what is known so far: render.json (an array of records), render.md,
-/// render-SCENE.svg, render-SCENE.png. Returns 0; 1 if a measurement failed (the others are still made).
+/// render-SCENE.svg, render-SCENE.png, render-SCENE-error.png. Throws InputError for an unknown experiment. Returns 0;
+/// 1 if a measurement failed (the others are still made).
 int run_render_benchmark(const RenderBenchmarkOptions& options, Progress& progress, std::ostream& out);
 
 } // namespace kokage

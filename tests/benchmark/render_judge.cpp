@@ -79,4 +79,21 @@ void split_errors(const Image& a, const Image& b, const PictureTruth& truth, Pic
         }
 }
 
+void split_bias(const Picture& picture, const Picture& traced, const PictureTruth& truth, PictureRecord& record) {
+    if (!(truth.mean > 0) || !picture.layers || !traced.layers)
+        return;
+    for (const auto& [name, layer] :
+         {std::pair("direct", &PictureLayers::direct), std::pair("indirect", &PictureLayers::indirect),
+          std::pair("reflected", &PictureLayers::reflection)}) {
+        const Image &drawn = (*picture.layers).*layer, &right = (*traced.layers).*layer;
+        MeansOfKinds biases;
+        for (std::size_t i = 0; i < truth.pixels.size(); ++i)
+            for (std::size_t c = 0; c < 3; ++c)
+                biases.add(truth.kind[i], (value(drawn, truth, i, c) - value(right, truth, i, c)) / truth.mean);
+        for (std::size_t k = 0; k < kKinds; ++k)
+            if (biases.count(k) > 0)
+                record.bias_by_light[pixel_kinds()[k]][name] = biases.of(k);
+    }
+}
+
 } // namespace kokage

@@ -13,4 +13,8 @@ void judge(const Image& radiance, const PictureTruth& truth, PictureRecord& reco
 /// (less what the truth's own noise has in it), half the mean square of a - b the square of what is each one's own.
 void split_errors(const Image& a, const Image& b, const PictureTruth& truth, PictureRecord& record);
 
+/// Sets which light a record's bias is of, from two pictures with layers, the second path-traced on the judged pixels.
+/// Its noise averages out over the many pixels of a kind.
+void split_bias(const Picture& picture, const Picture& traced, const PictureTruth& truth, PictureRecord& record);
+
 } // namespace kokage

@@ -40,6 +40,8 @@ nlohmann::json to_json(const PictureRecord& record) {
         {"systematic_error_of", record.systematic_error_of},
         {"sampling_error_of", record.sampling_error_of},
         {"share_of", record.share_of},
+        {"bias_by_light", record.bias_by_light},
+        {"change_by_skip", number(record.change_by_skip)},
         {"note", record.note},
     };
 }

@@ -9,8 +9,8 @@ namespace kokage {
 
 struct PictureRecord {
     std::string scene;  ///< "close", "teapot", "five"
-    std::string method; ///< "fast", "path-traced"
-    std::string effort; ///< "error 0.15, 16 samples", "64 samples"
+    std::string method; ///< "fast", "path-traced", "skip: WHAT"
+    std::string effort; ///< "error 0.15, 16 samples", "64 samples", "on", "off"
     int width = 0, height = 0, samples = 0;
     std::optional<double> error; ///< asked of the leaves' light: fast
     double cpu_seconds = 0;      ///< of the whole picture: everything after loading and growing
@@ -23,6 +23,10 @@ struct PictureRecord {
     std::map<std::string, double> share_of;               ///< of the judged pixels
     /// Root mean squares over the mean of ref: what stays with any number of samples, and what goes.
     std::map<std::string, double> systematic_error_of, sampling_error_of;
+    /// The bias, by what the pixel shows and by which light is wrong: direct, indirect, reflected (PictureLayers).
+    std::map<std::string, std::map<std::string, double>> bias_by_light;
+    /// skips that are on: mean of |on - off| over the mean of off, of all pixels and channels.
+    std::optional<double> change_by_skip;
     /// fast: CPU of path tracing to the same error over this one's.
     std::optional<double> times_less_cpu_than_path_tracing;
     std::string note;

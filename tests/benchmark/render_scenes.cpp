@@ -84,17 +84,20 @@ std::vector<SceneDescription> render_scenes(int width, int height, const std::fi
     MaterialDescription& glaze = pot.materials["glaze"];
     glaze.base_color = glm::vec3(0.5f, 0.08f, 0.05f);
     glaze.roughness_from_foot_to_top = glm::dvec2(0.6, 0.15);
-    look(pot, {3.2, 1.3, 6.5}, {1.0, 1.4, 0.5});
+    look(pot, {3.2, 1.4, 7}, {1, 1.3, 0.5});
 
     SceneDescription five = scene("five", width, height);
-    const std::pair<const char*, glm::dvec3> places[] = {
-        {"oak", {0, 0, 0}}, {"birch", {5, 0, -2}}, {"maple", {-5, 0, -1}}, {"pine", {9, 0, 3}}, {"cherry", {-9, 0, 2}}};
+    const std::pair<const char*, glm::dvec3> places[] = {{"oak", {-0.5, 0, -1}},
+                                                         {"birch", {2.6, 0, -1}},
+                                                         {"maple", {-3.6, 0, 0}},
+                                                         {"pine", {5, 0, 1}},
+                                                         {"cherry", {0.8, 0, 3}}};
     std::uint64_t seed = 0;
     for (const auto& [species, at] : places) {
         five.trees.push_back(tree(species, 8000, at, 40. * double(seed), seed + 1));
         ++seed;
     }
-    look(five, {1, 4.5, 27}, {0, 2.2, 0}); // all five are in the picture
+    look(five, {0.4, 2.5, 14.8}, {0.3, 2.15, 0}); // all five are in the picture
     return {close, pot, five};
 }
 

@@ -1,7 +1,7 @@
 // Makes the references of the benchmark's scenes:
 //
-//     kokage_make_references CACHE_FOLDER PATHS_A_SIDE THREADS [SCENE]...      (all scenes of the full benchmark if
-//     none is named)
+//     kokage_make_references CACHE_FOLDER PATHS_A_SIDE THREADS [SCENE]...      (all scenes of leaves if none is named)
+//     kokage_make_references CACHE_FOLDER PATHS_A_PIXEL THREADS pictures       (truths of the renderer's pictures)
 //
 // It takes hours; stop it whenever you like: it goes on where it was. Copy the finished *.reference files to
 // tests/benchmark/references. KOKAGE_DATA must name the data folder for the lamp-lit scenes.
@@ -10,6 +10,9 @@
 #include "common/services/stopwatch.h"
 #include "tests/benchmark/benchmark_plan.h"
 #include "tests/benchmark/find_reference.h"
+#include "tests/benchmark/render_plan.h"
+#include "tests/benchmark/render_scenes.h"
+#include "tests/benchmark/render_truth.h"
 
 #include <algorithm>
 #include <cstdlib>
@@ -48,6 +51,22 @@ void make(const std::vector<BenchSceneName>& names, const ReferenceOptions& opti
     }
 }
 
+void make_pictures(const std::filesystem::path& cache, std::uint64_t samples) {
+    const char* data = std::getenv("KOKAGE_DATA");
+    for (const bool quick : {true, false}) {
+        const RenderPlan plan = render_plan(quick);
+        for (const SceneDescription& description : render_scenes(plan.width, plan.height, data ? data : "", cache)) {
+            const Stopwatch watch;
+            const PictureTruth truth =
+                find_truth(assemble_scene(description, silent_progress()), judged_pixels(plan, description.picture),
+                           description.name, {{}, cache, samples}, silent_progress());
+            std::cout << truth_file_name(description.name, description.picture) << ": " << truth.samples
+                      << " paths a pixel, noise " << std::fixed << std::setprecision(3) << 100 * truth.noise << " %, "
+                      << std::setprecision(1) << watch.cpu() << " CPU-s" << std::endl;
+        }
+    }
+}
+
 } // namespace
 } // namespace kokage
 
@@ -62,7 +81,11 @@ int main(int count, char** arguments) {
     options.paths_per_side = std::strtoull(arguments[2], nullptr, 10);
     kokage::set_thread_count(std::atoi(arguments[3]));
     try {
-        kokage::make(kokage::wanted_scenes({arguments + 4, arguments + count}), options);
+        const std::vector<std::string> scenes(arguments + 4, arguments + count);
+        if (scenes == std::vector<std::string>{"pictures"})
+            kokage::make_pictures(options.cache_folder, options.paths_per_side);
+        else
+            kokage::make(kokage::wanted_scenes(scenes), options);
     } catch (const kokage::InputError& error) {
         std::cerr << error.what() << "\n";
         return 2;

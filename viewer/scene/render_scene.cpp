@@ -17,6 +17,11 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
                  "ask for a larger error, fewer trees, or fewer leaves");
     ShadingOptions shading;
     shading.error = options.error;
+    shading.merge_weak_lights = options.merge_weak_lights;
+    shading.for_hosts = !options.skip_light_maps;
+    if (options.skip_light_maps)
+        report.skips.push_back({"light maps and bent normals", "the picture reads none: what is mirrored is traced",
+                                "their rays and memory"});
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
     progress.throw_if_stopped();

@@ -1,0 +1,124 @@
+#include "tests/benchmark/render_skips.h"
+#include "common/services/stopwatch.h"
+#include "tests/benchmark/markdown.h"
+#include "tests/benchmark/render_scenes.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+constexpr int kSamples = 8, kRuns = 3;
+
+struct SkipCase {
+    std::string what;
+    std::string said; ///< by which the report's line about it begins
+    SceneDescription scene;
+    std::function<void(RenderOptions&)> switch_off;
+};
+
+SceneDescription matt(SceneDescription scene) {
+    scene.name += ", matt";
+    scene.materials["matt"].index_of_refraction = 1;
+    for (PlacedTree& tree : scene.trees)
+        tree.leaf_material = tree.bark_material = "matt";
+    return scene;
+}
+
+/// Forty dim lamps all around, each a hundred-thousandth to a thousandth of the sun.
+SceneDescription lamp_lit(SceneDescription scene) {
+    scene.name += ", 40 lamps";
+    for (int k = 0; k < 40; ++k)
+        scene.surroundings.lights.push_back("directional:" + std::to_string(9 * k) + "," +
+                                            std::to_string(10 + 17 * k % 70) + "," +
+                                            std::to_string(4e-3 * std::pow(10., -k / 20.)));
+    return scene;
+}
+
+std::vector<SkipCase> cases(int width, int height, const std::filesystem::path& data,
+                            const std::filesystem::path& folder) {
+    const std::vector<SceneDescription> scenes = render_scenes(width, height, data, folder);
+    return {
+        {"reflection map where all is matt", "reflection map", matt(scenes[0]),
+         [](RenderOptions& o) { o.picture.skips.bake_of_matt = false; }},
+        {"roughness that nothing in view has", "reflection map of other", scenes[0],
+         [](RenderOptions& o) { o.picture.skips.lobes_out_of_view = false; }},
+        {"relief below a quarter of a pixel", "relief", scenes[2],
+         [](RenderOptions& o) { o.picture.skips.thin_relief = false; }},
+        {"light maps that nothing reads", "light maps", scenes[0], [](RenderOptions& o) { o.skip_light_maps = false; }},
+        {"weak lights", "", lamp_lit(scenes[0]), [](RenderOptions& o) { o.merge_weak_lights = false; }},
+    };
+}
+
+std::string said_about(const SkipCase& skip, const WorkReport& report) {
+    for (const WorkReport::Skip& line : report.skips) {
+        const bool is_of_lights = skip.said.empty() && line.what.find("weak light") != std::string::npos;
+        if (is_of_lights || (!skip.said.empty() && line.what.rfind(skip.said, 0) == 0))
+            return line.what + ": " + line.why;
+    }
+    return "nothing was left out";
+}
+
+PictureRecord draw(const AssembledScene& scene, const SkipCase& skip, bool on, Progress& progress, Image& radiance) {
+    RenderOptions options;
+    options.picture = skip.scene.picture;
+    options.picture.samples = kSamples;
+    if (!on)
+        skip.switch_off(options);
+    PictureRecord record;
+    record.scene = skip.scene.name;
+    record.method = "skip: " + skip.what;
+    record.effort = on ? "on" : "off";
+    record.width = options.picture.width;
+    record.height = options.picture.height;
+    record.samples = kSamples;
+    record.error = options.error;
+    for (int run = 0; run < kRuns; ++run) {
+        const Stopwatch watch;
+        const RenderedScene rendered = render_scene(scene, options, progress);
+        record.cpu_seconds = run == 0 ? watch.cpu() : std::min(record.cpu_seconds, watch.cpu());
+        radiance = rendered.picture.radiance;
+        if (on)
+            record.note = said_about(skip, rendered.report);
+    }
+    return record;
+}
+
+double change(const Image& on, const Image& off) {
+    double sum = 0, mean = 0;
+    for (std::size_t i = 0; i < off.pixels.size(); ++i) {
+        sum += std::abs(double(on.pixels[i]) - double(off.pixels[i]));
+        mean += double(off.pixels[i]);
+    }
+    return mean > 0 ? sum / mean : 0;
+}
+
+} // namespace
+
+void measure_skips(const RenderPlan& plan, const std::filesystem::path& data, const std::filesystem::path& folder,
+                   Progress& progress, const std::function<void(const PictureRecord&)>& take) {
+    for (const SkipCase& skip : cases(plan.width / 2, plan.height / 2, data, folder)) {
+        const AssembledScene scene = assemble_scene(skip.scene, progress);
+        Image with, without;
+        PictureRecord on = draw(scene, skip, true, progress, with);
+        const PictureRecord off = draw(scene, skip, false, progress, without);
+        on.change_by_skip = change(with, without);
+        take(on);
+        take(off);
+    }
+}
+
+std::string skip_table(const std::vector<PictureRecord>& records) {
+    std::string text = markdown_row({"what is left out", "scene", "CPU s with it left out", "CPU s without",
+                                     "change of the picture %", "what the report says"}) +
+                       markdown_row(std::vector<std::string>(6, "---"));
+    for (std::size_t i = 0; i + 1 < records.size(); i += 2) {
+        const PictureRecord &on = records[i], &off = records[i + 1];
+        text += markdown_row({on.method.substr(on.method.find(' ') + 1), on.scene, three_digits(on.cpu_seconds),
+                              three_digits(off.cpu_seconds), three_digits(on.change_by_skip, 100), on.note});
+    }
+    return text;
+}
+
+} // namespace kokage
