@@ -61,7 +61,9 @@ class RenderBenchmark {
             });
             write();
         }
-        out_ << "\n" << render_figures(records_) << "\nwritten to " << options_.output_folder.string() << "\n";
+        out_ << "\n"
+             << (records_.empty() ? skip_table(skips_) : render_figures(records_)) << "\nwritten to "
+             << options_.output_folder.string() << "\n";
         return run_.exit_status();
     }
 

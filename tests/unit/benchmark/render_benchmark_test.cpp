@@ -158,7 +158,7 @@ TEST(RenderSkips, OnAndOffStandBesideOneAnother) {
     on.change_by_skip = 0.001;
     on.note = "relief: too thin";
     off.effort = "off";
-    EXPECT_NE(skip_table({on, off}).find("| relief | close | 1.000 | 2.00 | 0.100 | relief: too thin |"),
+    EXPECT_NE(skip_table({on, off}).find("| relief | close | 1.00 | 2.00 | 0.100 | relief: too thin |"),
               std::string::npos)
         << skip_table({on, off});
 }
