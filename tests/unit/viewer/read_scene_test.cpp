@@ -306,6 +306,25 @@ TEST(SceneSchema, AcceptsTheSceneThatIsDocumented) {
         EXPECT_TRUE(scene.contains(key)) << key;
 }
 
+TEST(SceneSchema, AcceptsTheScenesOfTheGalleryAsTheReaderDoes) {
+    // Files that are no part of the repository, where the data folder would have them.
+    const TemporaryFolder data(parent_in_memory());
+    for (const std::string file : {"env/sky_clouds_sun.hdr", "env/studio_small_03.hdr", "objects/utah_teapot.obj"}) {
+        std::filesystem::create_directories((data / file).parent_path());
+        std::ofstream(data / file) << "";
+    }
+    const JsonSchema schema(Json::parse(scene_schema_text()));
+    int scenes = 0;
+    for (const auto& entry :
+         std::filesystem::directory_iterator(std::filesystem::path(KOKAGE_TESTS_FOLDER) / "../viewer/pictures/scenes"))
+        if (entry.path().extension() == ".json") {
+            ++scenes;
+            EXPECT_TRUE(schema.accepts(Json::parse(read_text(entry.path())))) << entry.path();
+            EXPECT_NO_THROW(EXPECT_TRUE(read_scene(entry.path(), data / "").warnings.empty())) << entry.path();
+        }
+    EXPECT_EQ(scenes, 7);
+}
+
 TEST(SceneSchema, TellsEveryGrowthParameterAndSpecies) {
     const Json schema = Json::parse(scene_schema_text());
     const Json& growth = schema["definitions"]["growth"]["properties"];
