@@ -73,11 +73,27 @@ std::string no_such_command(const std::string& name, const std::vector<Command>&
     return "there is no command '" + name + "'; commands: " + known + " ('kokage --help' tells more)";
 }
 
-int run_command(const Command& command, bool quiet, int threads) {
-    set_thread_count(threads);
-    TerminalProgress progress(!quiet && stderr_is_terminal());
+/// What every command takes, before its name or after it.
+struct GeneralOptions {
+    bool quiet = false;
+    int threads = 0;
+};
+
+void add_general_options(CLI::App& app, GeneralOptions& options) {
+    app.add_flag("--quiet", options.quiet, "Print no progress and no summary, only warnings and errors")
+        ->group("General");
+    app.add_option("--threads", options.threads, "Threads to use; 0 = as many as the machine has")
+        ->check(CLI::Range(0, 4096).description(""))
+        ->type_name("N")
+        ->capture_default_str()
+        ->group("General");
+}
+
+int run_command(const Command& command, const GeneralOptions& options) {
+    set_thread_count(options.threads);
+    TerminalProgress progress(!options.quiet && stderr_is_terminal());
     try {
-        command.run({.quiet = quiet, .threads = threads, .progress = &progress});
+        command.run({.quiet = options.quiet, .threads = options.threads, .progress = &progress});
         std::cout.flush();
         return std::cout ? 0 : complain("the output could not be written (is the disk full?)", kInternalError);
     } catch (const StoppedBetweenFiles& stopped) {
@@ -116,17 +132,10 @@ int run_program(int argc, const char* const* argv) {
     program.footer("\n'kokage COMMAND --help' tells a command's options.");
     program.formatter(std::make_shared<WrappedFormatter>());
     const std::vector<Command> commands = all_commands(program);
-    bool quiet = false;
-    int threads = 0;
-    for (const Command& command : commands) {
-        command.app->add_flag("--quiet", quiet, "Print no progress and no summary, only warnings and errors")
-            ->group("General");
-        command.app->add_option("--threads", threads, "Threads to use; 0 = as many as the machine has")
-            ->check(CLI::Range(0, 4096).description(""))
-            ->type_name("N")
-            ->capture_default_str()
-            ->group("General");
-    }
+    GeneralOptions general;
+    add_general_options(program, general);
+    for (const Command& command : commands)
+        add_general_options(*command.app, general);
     program.require_subcommand(0, 1);
     try {
         program.parse(argc, argv);
@@ -142,9 +151,13 @@ int run_program(int argc, const char* const* argv) {
                             (asked.empty() ? "" : asked.front()->get_name() + " ") + "--help' tells more)",
                         kInputError);
     }
-    for (const Command& command : commands)
-        if (command.app->parsed())
-            return run_command(command, quiet, threads);
+    for (const Command& command : commands) {
+        if (!command.app->parsed())
+            continue;
+        if (program.count("--threads") > 0 && command.app->count("--threads") > 0)
+            return complain("--threads: it stands before and after the command; leave one of them out", kInputError);
+        return run_command(command, general);
+    }
     std::cout << program.help();
     return 0;
 }

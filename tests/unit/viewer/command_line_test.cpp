@@ -37,14 +37,41 @@ TEST(CommandLine, UnknownCommandIsNamed) {
 TEST(CommandLine, EveryCommandHasHelpWithAnExample) {
     TemporaryFolder folder;
     const std::string help = run_kokage({"--help"}, folder.path()).output;
-    for (const std::string command : {"grow", "describe", "shade", "compare", "bench"}) {
+    for (const std::string command : {"grow", "describe", "shade", "render", "bake", "compare", "bench"}) {
         EXPECT_NE(help.find("\n  " + command + " "), std::string::npos) << command;
         const ProgramRun run = run_kokage({command, "--help"}, folder.path());
         EXPECT_EQ(run.status, 0);
-        EXPECT_NE(run.output.find("Example: kokage " + command + " "), std::string::npos) << run.output;
+        EXPECT_NE(run.output.find(": kokage " + command + " ", run.output.find("\nExample")), std::string::npos)
+            << run.output;
         EXPECT_NE(run.output.find("--quiet"), std::string::npos);
         EXPECT_NE(run.output.find("--threads"), std::string::npos);
     }
+}
+
+TEST(CommandLine, GeneralOptionsStandBeforeOrAfterEveryCommand) {
+    TemporaryFolder folder;
+    const std::vector<std::vector<std::string>> commands = {
+        {"grow", "--help"},  {"describe", "--help"}, {"shade", "--help"},         {"render", "--help"},
+        {"bake", "--help"},  {"compare", "--help"},  {"render", "--example"},     {"bench", "--help"},
+        {"bench", "roots"},  {"compare", "a", "b"},  {"render", "no-such.scene"}, {"shade", "no-such.glb"},
+        {"bake", "no-such"}, {"grow", "no-such"}};
+    for (const std::vector<std::string>& command : commands) {
+        std::vector<std::string> before = {"--quiet", "--threads", "2"}, after = command;
+        before.insert(before.end(), command.begin(), command.end());
+        after.insert(after.end(), {"--quiet", "--threads", "2"});
+        const ProgramRun one = run_kokage(before, folder.path()), other = run_kokage(after, folder.path());
+        EXPECT_EQ(one.status, other.status) << command.front() << ": " << one.errors;
+        EXPECT_EQ(one.output, other.output) << command.front();
+        EXPECT_EQ(one.errors, other.errors) << command.front();
+        EXPECT_EQ(one.errors.find("expected"), std::string::npos) << one.errors;
+    }
+    const ProgramRun quiet = run_kokage({"--quiet", "grow", "birch", "--leaves", "20"}, folder.path());
+    EXPECT_EQ(quiet.status, 0) << quiet.errors;
+    EXPECT_EQ(quiet.output, "");
+    const ProgramRun twice = run_kokage({"--threads", "2", "describe", "birch", "--threads", "3"}, folder.path());
+    EXPECT_EQ(twice.status, 2);
+    EXPECT_TRUE(is_one_complaint(twice.errors));
+    EXPECT_NE(twice.errors.find("--threads"), std::string::npos);
 }
 
 TEST(CommandLine, UnknownBenchmarksAreRefused) {
