@@ -19,6 +19,11 @@ GlossShading::GlossShading(const RayQueries& queries, const Environment& environ
     : queries_(queries), environment_(environment), surfaces_(surfaces), ground_(ground), ground_light_(ground_light) {
     if (!lobes)
         return;
+    if (!surfaces.has_pixel_shadows()) {
+        report.skips.push_back({"reflection map", "patches show the light that was solved, in which gloss is already",
+                                "one bake of the surroundings"});
+        return;
+    }
     // The horizon's correction reads narrower lobes than the surface's own.
     remainder_.emplace(environment, std::clamp(0.4f * lobes->least, kLeastRoughness, 1.f),
                        std::clamp(lobes->most, kLeastRoughness, 1.f), progress, report);

@@ -33,7 +33,7 @@ class GlossShading {
     const SurfaceShading& surfaces_;
     const GroundLook& ground_;
     const GroundShading& ground_light_;
-    std::optional<GlossyRemainder> remainder_; ///< empty: all is matt
+    std::optional<GlossyRemainder> remainder_; ///< empty: no gloss is drawn by itself
 };
 
 } // namespace kokage

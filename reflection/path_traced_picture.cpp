@@ -27,27 +27,20 @@ struct TruthOfPicture {
         const float ground_distance = ground.distance(origin, direction);
         if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
             const SurfacePoint at = paths.points().at(origin, hit);
-            SeenByRay seen = SeenByRay::surface_at(at, hit.hit.distance, queries.scene());
-            const SurfaceRadiance light = paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers);
-            seen.radiance = light.total();
-            seen.direct = light.direct;
-            seen.indirect = light.indirect;
-            seen.reflection = light.reflection;
-            return seen;
+            return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(),
+                                         paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers));
         }
         if (!(ground_distance < kInfinity))
             return SeenByRay::surroundings(backdrop.seen(direction));
         if (direction.y >= 0)
-            return SeenByRay::ground_at(glm::vec3(0.f), ground_distance);
+            return SeenByRay::ground_at(glm::vec3(0.f), ground_distance, {});
         const glm::vec3 point = ground.point(origin, direction, ground_distance);
         const float clear = ground.clear(ground_distance);
         const glm::vec3 albedo = ground.albedo(point, direction, ground_distance);
-        const SurfaceRadiance light = paths.radiance(PathIntegrator::ground_vertex(point, albedo), numbers);
-        SeenByRay seen = SeenByRay::ground_at(albedo, ground_distance);
-        seen.direct = clear * light.direct;
-        seen.indirect = clear * light.indirect + (1 - clear) * ground.haze(direction);
-        seen.radiance = seen.direct + seen.indirect;
-        return seen;
+        SurfaceRadiance light = paths.radiance(PathIntegrator::ground_vertex(point, albedo), numbers);
+        light.direct *= clear;
+        light.indirect = clear * light.indirect + (1 - clear) * ground.haze(direction);
+        return SeenByRay::ground_at(albedo, ground_distance, light);
     }
 };
 

@@ -50,7 +50,7 @@ struct ShadedScene {
     std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
     std::vector<glm::vec3> radiance_front,
-        radiance_back;                ///< per patch: all light (used where per-pixel shadows are off)
+        radiance_back;                ///< per patch: all light, with what gloss mirrors as if it scattered it
     std::optional<float> foot_height; ///< where it stands if it has no ground of its own; empty = its lowest point
 };
 
@@ -77,7 +77,7 @@ struct PictureOptions {
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
     int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
     std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
-    bool pixel_shadows = true;
+    bool pixel_shadows = true; ///< else surfaces show the light that was solved for their patches, gloss in it
     PictureGround ground = PictureGround::automatic;
     std::uint64_t seed = 1;
     bool layers = false;                 ///< also Picture::layers

@@ -34,23 +34,15 @@ struct Renderer {
         const float ground_distance = ground.distance(origin, direction);
         if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
             const SurfacePoint at = surfaces.point(origin, hit);
-            SeenByRay seen = SeenByRay::surface_at(at, hit.hit.distance, queries.scene());
             SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
             light.reflection += gloss.radiance(at, direction, sample, scratch);
-            seen.radiance = light.total();
-            seen.direct = light.direct;
-            seen.indirect = light.indirect;
-            seen.reflection = light.reflection;
-            return seen;
+            return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(), light);
         }
         if (!(ground_distance < kInfinity))
             return SeenByRay::surroundings(backdrop.seen(direction));
         const GroundRadiance light = ground_light.radiance(origin, direction, ground_distance, sample, scratch);
-        SeenByRay seen = SeenByRay::ground_at(light.albedo, ground_distance);
-        seen.radiance = light.total;
-        seen.direct = light.direct;
-        seen.indirect = light.total - light.direct;
-        return seen;
+        return SeenByRay::ground_at(light.albedo, ground_distance,
+                                    {.direct = light.direct, .indirect = light.total - light.direct});
     }
 };
 

@@ -12,8 +12,17 @@ void write(Image& image, int x, int y, const glm::dvec3& sum, std::uint32_t coun
 
 } // namespace
 
-SeenByRay SeenByRay::surface_at(const SurfacePoint& at, float distance, const PatchScene& patches) {
+void SeenByRay::take(const SurfaceRadiance& light) {
+    radiance = light.total();
+    direct = light.direct;
+    indirect = light.indirect;
+    reflection = light.reflection;
+}
+
+SeenByRay SeenByRay::surface_at(const SurfacePoint& at, float distance, const PatchScene& patches,
+                                const SurfaceRadiance& light) {
     SeenByRay seen;
+    seen.take(light);
     seen.albedo = at.optics.reflectance;
     seen.normal = at.normal;
     seen.distance = distance;
@@ -23,8 +32,9 @@ SeenByRay SeenByRay::surface_at(const SurfacePoint& at, float distance, const Pa
     return seen;
 }
 
-SeenByRay SeenByRay::ground_at(const glm::vec3& albedo, float distance) {
+SeenByRay SeenByRay::ground_at(const glm::vec3& albedo, float distance, const SurfaceRadiance& light) {
     SeenByRay seen;
+    seen.take(light);
     seen.albedo = albedo;
     seen.normal = {0, 1, 0};
     seen.distance = distance;

@@ -1,7 +1,7 @@
 #pragma once
 // What one camera ray saw, in parts, and the mean of a pixel's rays as layers. Private to reflection.
 #include "reflection/camera_rays.h"
-#include "reflection/surface_points.h"
+#include "reflection/surface_shading.h"
 
 #include <limits>
 #include <vector>
@@ -16,10 +16,13 @@ struct SeenByRay {
     std::uint32_t leaf = 0;                                  ///< its number, from 1; 0: no leaf
     bool surface = false;                                    ///< neither ground nor surroundings
 
-    /// Everything but radiance and its parts.
-    static SeenByRay surface_at(const SurfacePoint& at, float distance, const PatchScene& patches);
-    static SeenByRay ground_at(const glm::vec3& albedo, float distance);
+    static SeenByRay surface_at(const SurfacePoint& at, float distance, const PatchScene& patches,
+                                const SurfaceRadiance& light);
+    static SeenByRay ground_at(const glm::vec3& albedo, float distance, const SurfaceRadiance& light);
     static SeenByRay surroundings(const glm::vec3& radiance);
+
+  private:
+    void take(const SurfaceRadiance& light);
 };
 
 /// An empty picture of a size, with the layers that the options ask for.

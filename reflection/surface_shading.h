@@ -49,6 +49,8 @@ class SurfaceShading {
     /// rest).
     SurfaceRadiance radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
                              ShadingScratch& scratch) const;
+    /// Else surfaces show the light that was solved, gloss in it as if it scattered.
+    bool has_pixel_shadows() const { return pixel_shadows_; }
     /// The solution's, of all light: no ray is traced.
     glm::vec3 solved_radiance(const SurfacePoint& at) const;
 

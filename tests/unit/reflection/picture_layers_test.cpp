@@ -41,10 +41,11 @@ struct TwoLeaves {
             patches.triangle_patch.push_back(std::uint32_t(patches.patches.size() - 1));
         }
     }
-    Picture drawn(bool by_paths, bool layers = true) const {
+    Picture drawn(bool by_paths, bool layers = true, bool pixel_shadows = true) const {
         const RayQueries queries(patches);
         PictureOptions options = small_picture(40, 30, 8);
         options.layers = layers;
+        options.pixel_shadows = pixel_shadows;
         const Camera camera = camera_at({0, 0.3f, 6}, {0, 0, 0}, 0.8f);
         return by_paths ? render_path_traced(scene, queries, environment, camera, options, silent_progress())
                         : render_picture(scene, queries, environment, camera, options, silent_progress());
@@ -101,6 +102,16 @@ TEST(PictureLayers, TellWhatIsSeenWhere) {
         EXPECT_EQ(layers.reflection.at(left, leaf_row)[1], 0); // matt
         EXPECT_GT(layers.reflection.at(right, leaf_row)[1], 0.01f);
     }
+}
+
+TEST(PictureLayers, SolvedLightWithoutPixelShadowsHoldsGlossOnce) {
+    const Picture picture = TwoLeaves().drawn(false, true, false);
+    for (const int leaf : {13, 25}) { // matt, glossy
+        EXPECT_LT(glm::length(pixel(picture.radiance, leaf, 14) - glm::vec3(0.25f)), 1e-6f) << leaf;
+        EXPECT_EQ(pixel(picture.layers->reflection, leaf, 14), glm::vec3(0.f)) << leaf;
+    }
+    ASSERT_FALSE(picture.report.skips.empty());
+    EXPECT_EQ(picture.report.skips[0].what, "reflection map");
 }
 
 TEST(PictureLayers, DontChangeThePictureAndAreTheSameBitsForAnyNumberOfThreads) {
