@@ -2,6 +2,7 @@
 // sampling (Veach 1997, section 9.2.4, balance heuristic) between the cosine lobe and the remainder's bright parts: a
 // path's next direction is drawn from the mixture of both, so that no second shadow ray is needed.
 #include "common/trace/path_tracer.h"
+#include "common/environment/light_radiance.h"
 #include "common/services/error.h"
 #include "common/trace/light_sampler.h"
 #include "common/trace/remainder_sampler.h"
@@ -216,21 +217,9 @@ struct PathTracer::Implementation {
 
     /// Radiance of split-off lights that have an extent.
     glm::vec3 lights_seen(const glm::vec3& direction) const {
-        const auto within = [&](const glm::vec3& towards, float half_angle) {
-            return half_angle > 0 && glm::dot(direction, towards) >= std::cos(half_angle);
-        };
-        // A uniform cone of radiance L gives L pi sin^2(half angle) on a facing surface.
-        const auto cone = [](float half_angle) { return kPi * std::sin(half_angle) * std::sin(half_angle); };
         glm::vec3 seen(0);
-        for (const DistantLight& light : environment.distant_lights) {
-            if (!within(light.direction, light.half_angle))
-                continue;
-            if (light.texels.empty())
-                seen += light.irradiance / cone(light.half_angle);
-            for (const DistantLight::Texel& texel : light.texels)
-                if (within(texel.direction, texel.half_angle))
-                    seen += texel.irradiance / cone(texel.half_angle);
-        }
+        for (const DistantLight& light : environment.distant_lights)
+            seen += radiance_along(light, direction);
         return seen;
     }
 };

@@ -1,6 +1,7 @@
 // Sampling of distant lights, and lights as a user writes them.
 #include "common/environment/analytic_sky.h"
 #include "common/environment/light_description.h"
+#include "common/environment/light_radiance.h"
 #include "common/services/error.h"
 #include "common/services/random.h"
 
@@ -88,6 +89,39 @@ TEST(SampleLight, EveryNumberGivesADirection) {
         const LightSample lit = sample_light(three_texels(1), u, u);
         EXPECT_GT(luminance(lit.irradiance_over_pdf), 0); // never the black texel
     }
+}
+
+TEST(RadianceAlong, GivesTheIrradianceBackAndNothingBesideTheLight) {
+    DistantLight disc;
+    disc.direction = glm::normalize(glm::vec3(0.3f, 0.2f, -0.9f));
+    disc.half_angle = 0.3f;
+    disc.irradiance = {1, 2, 3};
+    DistantLight region = three_texels(1);
+    region.half_angle = 0.5f;
+    // A surface that faces the light gathers its irradiance: the sum of radiance x cosine over the sphere, about its
+    // axis from 0 to 0.6.
+    for (const DistantLight& light : {disc, region}) {
+        const glm::vec3 across = glm::normalize(glm::cross(light.direction, glm::vec3(0.1f, 0.5f, 1))),
+                        up = glm::cross(light.direction, across);
+        glm::dvec3 sum(0.0);
+        constexpr int kSteps = 1200;
+        for (int i = 0; i < kSteps; ++i)
+            for (int j = 0; j < kSteps; ++j) {
+                const double polar = 0.6 * (i + 0.5) / kSteps, around = 2 * kPiDouble * (j + 0.5) / kSteps;
+                const glm::vec3 direction =
+                    float(std::cos(polar)) * light.direction +
+                    float(std::sin(polar)) * (float(std::cos(around)) * across + float(std::sin(around)) * up);
+                const bool is_disc = light.texels.empty();
+                const double cosine = is_disc ? std::cos(polar) : 1;
+                sum += cosine * std::sin(polar) * glm::dvec3(radiance_along(light, direction));
+            }
+        sum *= 0.6 / kSteps * 2 * kPiDouble / kSteps;
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c], double(light.irradiance[c]), 0.01 * double(light.irradiance[c]) + 1e-3);
+        EXPECT_EQ(radiance_along(light, -light.direction), glm::vec3(0.f));
+    }
+    disc.half_angle = 0;
+    EXPECT_EQ(radiance_along(disc, disc.direction), glm::vec3(0.f));
 }
 
 TEST(LightDescription, ReadsAllKinds) {
