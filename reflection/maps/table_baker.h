@@ -17,7 +17,9 @@ struct TableBakerSettings {
 /// has it. Lights of the image are split off before and added as lobes, as the spectral baker does, except with
 /// TableWeights::paper, which is as published: there an image with lights gives a warning. Error: what the thresholds
 /// cut off, and the blur of a dome's spacing, which is about a tenth of the lobe's width (see weight_table.h); lobes
-/// narrower than the finest dome's spacing (0.9 degrees) show the dome itself. Throws InputError, Stopped.
+/// narrower than the finest dome's spacing (0.9 degrees) show the dome itself. Images of less than 400 columns are
+/// interpolated between pixels, which blurs them: baking them gives a warning with about how much. Throws InputError,
+/// Stopped.
 std::unique_ptr<Baker> table_baker(const TexelLayout& layout, const TableBakerSettings& settings, WorkReport& report,
                                    Progress& progress = silent_progress());
 

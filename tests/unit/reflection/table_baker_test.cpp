@@ -61,6 +61,28 @@ TEST(TableBaker, IsNearBruteForceOnWhatIsSmooth) {
     EXPECT_LT(mean_difference_255(ggx, smooth_surroundings(512, 256), {}), 3) << "its tails are cut off";
 }
 
+TEST(TableBaker, SaysHowFarItIsOffOnCoarseImages) {
+    const TexelLayout layout = few_texels(LobeKind::phong, {1, 20, 300, 5000});
+    const auto warnings = [&](int width) {
+        WorkReport report;
+        std::vector<glm::vec3> filtered(layout.size());
+        table_baker(layout, {}, report)->bake(smooth_surroundings(width, width / 2), filtered, report);
+        return report.warnings;
+    };
+    EXPECT_TRUE(warnings(400).empty());
+    for (const int width : {16, 64, 128}) {
+        const std::vector<std::string> said = warnings(width);
+        ASSERT_EQ(said.size(), 1u) << width;
+        const std::size_t about = said[0].find("about ");
+        ASSERT_NE(about, std::string::npos) << said[0];
+        const double told = std::stod(said[0].substr(about + 6));
+        const double found = mean_difference_255(layout, smooth_surroundings(width, width / 2), {});
+        std::printf("%d columns: told %g, found %g\n", width, told, found);
+        EXPECT_GT(told, 0.8 * found) << width;
+        EXPECT_LT(told, 4 * found) << width;
+    }
+}
+
 TEST(TableBaker, FiltersWhatIsLinearInDirectionAlmostExactlyWhateverIsCutOff) {
     Environment environment = smooth_surroundings(512, 256);
     for (int y = 0; y < 256; ++y)
