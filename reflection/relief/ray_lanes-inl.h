@@ -1,6 +1,7 @@
 // Rays on relief in the lanes of vectors, for methods that step along them: a lane whose ray is done takes the next one
 // of the stream. Per-target code of Google Highway: included once for every instruction set, so the guard toggles.
 #include "reflection/relief/lane_rays.h"
+#include "reflection/relief/lane_vectors-inl.h"
 #include "reflection/relief/padded_depths.h"
 
 #include <hwy/highway.h>
@@ -21,28 +22,6 @@
 
 HWY_BEFORE_NAMESPACE();
 namespace kokage::relief_lanes::HWY_NAMESPACE {
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<float, 16>;
-using IntTag = hn::RebindToSigned<Tag>;
-using Vec = hn::Vec<Tag>;
-using Int = hn::Vec<IntTag>;
-using Mask = hn::Mask<Tag>;
-constexpr std::size_t kLanes = hn::MaxLanes(Tag());
-
-HWY_INLINE Vec Constant(float value) {
-    return hn::Set(Tag(), value);
-}
-HWY_INLINE Int Whole(int value) {
-    return hn::Set(IntTag(), value);
-}
-HWY_INLINE std::uint32_t Bits(Mask mask) {
-    std::uint8_t bytes[8] = {};
-    hn::StoreMaskBits(Tag(), mask, bytes);
-    std::uint32_t bits;
-    std::memcpy(&bits, bytes, sizeof bits);
-    return bits;
-}
 
 /// Two neighbours in memory for every lane: index and index + 1.
 HWY_INLINE void GatherPairs(const float* base, Int index, Vec& first, Vec& second) {
