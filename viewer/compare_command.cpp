@@ -1,11 +1,11 @@
 // `kokage compare`: how far two pictures, two reflection maps or two shadings of a tree are apart.
 #include "common/scene/image_file.h"
-#include "common/scene/image_layers.h"
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "reflection/compare_images.h"
 #include "viewer/command.h"
+#include "viewer/compare_layers.h"
 #include "viewer/compare_maps.h"
 #include "viewer/compare_trees.h"
 #include "viewer/scene/output_check.h"
@@ -77,18 +77,23 @@ Image clamped(Image image) {
     return image;
 }
 
-/// What two pictures of `kokage render` show, part by part: error of each layer that both have, of equal channels.
-std::vector<std::pair<std::string, DifferenceFigures>> compare_layers(const CompareOptions& options) {
-    if (lower_ending(options.picture) != ".exr" || lower_ending(options.reference) != ".exr")
-        return {};
-    std::vector<std::pair<std::string, DifferenceFigures>> figures;
-    const std::vector<ImageLayer> layers = load_layers(options.picture), references = load_layers(options.reference);
-    for (const ImageLayer& layer : layers)
-        for (const ImageLayer& reference : references)
-            if (!layer.name.empty() && layer.name == reference.name && layer.channel_names.size() == 3 &&
-                layer.channel_names == reference.channel_names)
-                figures.emplace_back(layer.name, compare_images(layer.image, reference.image).all);
-    return figures;
+void print_layer(const LayerComparison& layer) {
+    if (layer.difference)
+        print_figures(layer.name.c_str(), *layer.difference, 1);
+    if (layer.differing_share)
+        std::printf("%-20s differs in %.4g %% of the pixels\n", layer.name.c_str(), 100 * *layer.differing_share);
+    if (layer.pixels_finite_in_one > 0)
+        std::printf("%-20s %s where only one picture is finite, in no figure\n", "",
+                    counted(layer.pixels_finite_in_one, "pixel", "pixels").c_str());
+}
+
+Json layer_json(const LayerComparison& layer) {
+    Json json = layer.difference ? figures_json(*layer.difference) : Json::object();
+    if (layer.difference)
+        json["pixels_finite_in_one"] = layer.pixels_finite_in_one;
+    if (layer.differing_share)
+        json["differing_share"] = *layer.differing_share;
+    return json;
 }
 
 void compare_pictures(const CompareOptions& options, const CommandContext& context) {
@@ -109,11 +114,11 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
     std::printf("%-20s x %d, y %d\n", "largest error at", whole.max_x, whole.max_y);
     if (whole.skipped_values > 0)
         std::printf("not finite, in no figure: %s\n", counted(whole.skipped_values, "value", "values").c_str());
-    const auto layers = compare_layers(options);
+    const std::vector<LayerComparison> layers = compare_layers(options.picture, options.reference);
     if (!layers.empty())
         std::printf("these figures are of the radiance; layer by layer:\n");
-    for (const auto& [name, figures] : layers)
-        print_figures(name.c_str(), figures, 1);
+    for (const LayerComparison& layer : layers)
+        print_layer(layer);
     const char* shows = "largest difference of each pixel's channels";
     const std::string legend = error_legend_text(double(whole.map_scale), 1, "");
     if (!options.error_map.empty()) {
@@ -128,8 +133,8 @@ void compare_pictures(const CompareOptions& options, const CommandContext& conte
                        {"largest_error_at", {whole.max_x, whole.max_y}},
                        {"values_not_finite", whole.skipped_values},
                        {"warnings", unlike.empty() ? Json::array() : Json::array({unlike})}};
-        for (const auto& [name, figures] : layers)
-            report["layers"][name] = figures_json(figures);
+        for (const LayerComparison& layer : layers)
+            report["layers"][layer.name] = layer_json(layer);
         if (!options.error_map.empty())
             report["error_map"] = map_json(options.error_map, shows, double(whole.map_scale), legend);
         write_json(options.report, report);

@@ -1,9 +1,11 @@
 // `kokage compare` on pictures and reflection maps.
 #include "common/scene/image_file.h"
+#include "common/scene/image_layers.h"
 #include "reflection/maps/cube_file.h"
 #include "reflection/maps/map_file.h"
 #include "tests/support/program_run.h"
 
+#include <limits>
 #include <nlohmann/json.hpp>
 
 namespace kokage {
@@ -50,6 +52,32 @@ TEST(Compare, FiguresAndMapAreWritten) {
     EXPECT_NE(run.output.find(std::string(report["error_map"]["colours"])), std::string::npos);
     EXPECT_TRUE(report["warnings"].empty());
     EXPECT_EQ(run.errors, "");
+}
+
+TEST(Compare, LayersAreComparedByWhatTheyHold) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    TemporaryFolder folder;
+    // Eight pixels: four at 10 m in both, two that meet nothing in both, two that do in one alone; one leaf is another.
+    Image depth_a(8, 1, 1), depth_b(8, 1, 1), leaf_a(8, 1, 1), leaf_b(8, 1, 1);
+    depth_a.pixels = {10.5f, 10, 10, 10, kInfinity, kInfinity, kInfinity, 3};
+    depth_b.pixels = {10, 10, 10, 10, kInfinity, kInfinity, 5, kInfinity};
+    leaf_a.pixels = {1, 2, 3, 4, 0, 0, 70000, 0};
+    leaf_b.pixels = {1, 2, 3, 4, 0, 0, 70001, 0};
+    const auto save = [&](const char* file, const Image& depth, const Image& leaf) {
+        save_layers(folder / file,
+                    {{"", {"R", "G", "B"}, Image(8, 1, 3)}, {"depth", {"Z"}, depth}, {"leaf", {"id"}, leaf}});
+    };
+    save("a.exr", depth_a, leaf_a);
+    save("b.exr", depth_b, leaf_b);
+    const ProgramRun run = run_kokage({"compare", "a.exr", "b.exr", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const auto layers = nlohmann::json::parse(read_text(folder / "r.json"))["layers"];
+    EXPECT_NEAR(double(layers["depth"]["mean"]), 0.125, 1e-6) << "of the four that are finite in both";
+    EXPECT_NEAR(double(layers["depth"]["max"]), 0.5, 1e-6);
+    EXPECT_EQ(layers["depth"]["pixels_finite_in_one"], 2);
+    EXPECT_EQ(layers["leaf"], nlohmann::json({{"differing_share", 0.125}}));
+    EXPECT_NE(run.output.find("2 pixels where only one picture is finite"), std::string::npos) << run.output;
+    EXPECT_NE(run.output.find("leaf                 differs in 12.5 % of the pixels"), std::string::npos) << run.output;
 }
 
 TEST(Compare, ReflectionMapsOfDifferentFilesAreCompared) {
