@@ -30,6 +30,11 @@ Film::Film(const PictureOptions& options, const CameraFrame& frame)
     bands_.resize(std::size_t((height_ + 2 + kBandRows - 1) / kBandRows));
 }
 
+double Film::bytes(const PictureOptions& options) {
+    const double sums = double(sizeof(float) * (options.layers ? kWithLayers : kPlain)) * (kBandRows + 2) / kBandRows;
+    return double(options.width) * double(options.height) * (sums + (options.layers ? double(sizeof(Nearest)) : 0));
+}
+
 int Film::end_row(int band) const {
     return std::min(first_row(band) + kBandRows, height_ + 1);
 }

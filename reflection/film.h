@@ -29,6 +29,8 @@ class Film {
     int band_count() const { return int(bands_.size()); }
     int first_row(int band) const { return -1 + band * kBandRows; }
     int end_row(int band) const;
+    /// Bytes of a whole one.
+    static double bytes(const PictureOptions& options);
     /// All rays of a square of a band. Bands at once, squares of a band one after another in one order.
     void add(int band, int x, int y, const std::vector<CameraSample>& samples);
     /// When all is added.

@@ -12,9 +12,11 @@ namespace {
 /// The fast way: light is solved once for all patches, pixels read it.
 Picture render_solved(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, WorkReport& report,
                       Progress& progress) {
-    check_memory(estimated_transport_bytes(double(scene.patches.patches.size()), options.error),
-                 "the light of " + count_text(scene.patches.patches.size()) + " patches at this error",
-                 "ask for a larger error, fewer trees, or fewer leaves");
+    check_memory(estimated_transport_bytes(double(scene.patches.patches.size()), options.error) +
+                     estimated_picture_bytes(options.picture),
+                 "the light of " + count_text(scene.patches.patches.size()) +
+                     " patches at this error, with the picture,",
+                 "ask for a larger error, fewer trees, fewer leaves, or a smaller picture");
     ShadingOptions shading;
     shading.error = options.error;
     shading.merge_weak_lights = options.merge_weak_lights;

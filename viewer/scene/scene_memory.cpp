@@ -1,6 +1,8 @@
 #include "viewer/scene/scene_memory.h"
 #include "common/services/error.h"
 #include "common/services/memory.h"
+#include "common/services/parallel.h"
+#include "reflection/picture_memory.h"
 #include "viewer/scene/values.h"
 
 namespace kokage {
@@ -22,7 +24,8 @@ double estimated_transport_bytes(double patches, double error) {
 
 double estimated_picture_bytes(const PictureOptions& options) {
     const double pixels = double(options.width) * double(options.height);
-    return pixels * (options.layers ? 120 : 40);
+    const double shown = 12 + 8; // tone-mapped, and as it goes into a file; what the drawing took may not be free again
+    return picture_bytes(options, thread_count()) + pixels * shown;
 }
 
 void check_memory(double bytes, const std::string& what, const std::string& mend) {

@@ -13,7 +13,7 @@ double estimated_geometry_bytes(double vertices, double triangles);
 /// Bytes that the `bundles` transport of so many patches takes while it is solved to an error: measured, growing as the
 /// links do with error^-2.
 double estimated_transport_bytes(double patches, double error);
-/// Bytes of a picture with its layers while it is made.
+/// Bytes of a picture with its layers while it is drawn and written, by as many threads as may be used.
 double estimated_picture_bytes(const PictureOptions& options);
 
 /// Throws InputError if `bytes` for `what` are not to be had; `mend` says what to reduce. Does nothing where the system
