@@ -131,18 +131,6 @@ Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options,
 
 namespace {
 
-/// Where +Z is up, to where +Y is.
-void set_upright(MeshScene& scene) {
-    const auto turned = [](const auto& v) { return std::decay_t<decltype(v)>(v.x, v.z, -v.y); };
-    scene.origin = turned(scene.origin);
-    for (SceneMesh& mesh : scene.meshes) {
-        for (glm::vec3& position : mesh.positions)
-            position = turned(position);
-        for (glm::vec3& normal : mesh.normals)
-            normal = turned(normal);
-    }
-}
-
 /// A tree from a flat scene, step by step.
 class ForeignTreeBuilder {
   public:

@@ -50,4 +50,15 @@ glm::dvec3 choose_origin(const glm::dvec3& low, const glm::dvec3& high) {
     return glm::length(centre) > 16 * glm::length(high - low) ? centre : glm::dvec3(0.0);
 }
 
+void set_upright(MeshScene& scene) {
+    const auto turned = [](const auto& v) { return std::decay_t<decltype(v)>(v.x, v.z, -v.y); };
+    scene.origin = turned(scene.origin);
+    for (SceneMesh& mesh : scene.meshes) {
+        for (glm::vec3& position : mesh.positions)
+            position = turned(position);
+        for (glm::vec3& normal : mesh.normals)
+            normal = turned(normal);
+    }
+}
+
 } // namespace kokage

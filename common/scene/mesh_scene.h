@@ -81,6 +81,9 @@ std::vector<glm::vec3> compute_normals(std::span<const glm::vec3> positions, std
 /// Colour and alpha of an image as a texture holds them; alpha that is 1 everywhere is no alpha.
 SceneTexture split_alpha(const Image& image);
 
+/// Turned from +Z up to +Y up.
+void set_upright(MeshScene& scene);
+
 /// 0, unless a scene of this box lies so far away that floats would coarsen it: then its centre.
 glm::dvec3 choose_origin(const glm::dvec3& low, const glm::dvec3& high);
 

@@ -19,17 +19,6 @@ constexpr glm::vec3 kGrey(0.5f);              ///< of what says nothing of its c
 constexpr double kPatchRadius = 0.025;        ///< of the object's diagonal: some hundreds of patches on a ball
 constexpr std::size_t kMostPieces = 1u << 20; ///< no more triangles come of splitting
 
-void set_upright(MeshScene& scene) {
-    const auto turned = [](const auto& v) { return std::decay_t<decltype(v)>(v.x, v.z, -v.y); };
-    scene.origin = turned(scene.origin);
-    for (SceneMesh& mesh : scene.meshes) {
-        for (glm::vec3& position : mesh.positions)
-            position = turned(position);
-        for (glm::vec3& normal : mesh.normals)
-            normal = turned(normal);
-    }
-}
-
 /// Texture coordinates that two textures share, or not.
 bool lies_alike(const SceneTexture& a, const SceneTexture& b) {
     return a.texture_coordinates == b.texture_coordinates && a.offset == b.offset && a.scale == b.scale &&
@@ -153,6 +142,8 @@ ObjectTree object_tree(MeshScene scene, const std::filesystem::path& file, bool 
             }
     if (!(low.x <= high.x))
         throw InputError(file.string() + ": it has no triangles, so there is nothing to see of it");
+    if (!(glm::length(high - low) > 0))
+        throw InputError(file.string() + ": it has no size: all corners of its triangles are one point");
     object.low = low;
     object.high = high;
     const double radius = kPatchRadius * glm::length(high - low);
