@@ -9,6 +9,7 @@
 #include "viewer/scene/data_folder.h"
 #include "viewer/scene/output_check.h"
 #include "viewer/scene/values.h"
+#include "viewer/shared_options.h"
 
 #include <algorithm>
 #include <cstdio>
@@ -133,9 +134,7 @@ void add_output_options(CLI::App& app, BakeOptions& o) {
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Output");
-    app.add_option("--report", o.report, "What was done, counted, timed and skipped")
-        ->type_name("R.json")
-        ->group("Output");
+    add_report_option(app, o.report)->group("Output");
 }
 
 [[noreturn]] void refuse(const std::string& option, const std::string& why) {
@@ -368,7 +367,7 @@ void add_bake_options(CLI::App& app, BakeOptions& o) {
 }
 
 void complete_bake_options(BakeOptions& o) {
-    o.surroundings.option = "ENV";
+    o.surroundings.words.environment = "ENV";
     find_in_data(o.data, {&o.surroundings.environment});
     complete_harmonics(o);
     if (o.map.container != MapContainer::harmonics) {

@@ -5,9 +5,9 @@
 #include "viewer/scene/output_check.h"
 #include "viewer/scene/read_scene.h"
 #include "viewer/scene/values.h"
+#include "viewer/shared_options.h"
 
 #include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace kokage {
@@ -25,17 +25,9 @@ void add_picture_options(CLI::App& app, RenderCommandOptions& o) {
     app.add_option("--size", o.size, "Its size (otherwise the scene's, or 1280x960)")
         ->type_name("WxH")
         ->group("Picture");
-    app.add_option("--samples", o.samples, "Its camera rays a pixel (otherwise the scene's, or 16)")
-        ->type_name("N")
-        ->check(CLI::Range(1, 65536).description(""))
-        ->group("Picture");
-    app.add_option("--exposure", o.exposure_stops,
-                   "Its exposure in stops (otherwise the scene's, or metered as a camera does); not for .exr")
-        ->type_name("STOPS")
-        ->group("Picture");
-    app.add_option("--report", o.report, "What was done, counted, timed and skipped")
-        ->type_name("R.json")
-        ->group("Picture");
+    add_samples_option(app, o.samples, " (otherwise the scene's, or 16)")->group("Picture");
+    add_exposure_option(app, o.exposure_stops, "the scene's, or metered as a camera does", ".exr")->group("Picture");
+    add_report_option(app, o.report)->group("Picture");
 }
 
 void add_render_method_options(CLI::App& app, RenderCommandOptions& o) {
@@ -44,10 +36,9 @@ void add_render_method_options(CLI::App& app, RenderCommandOptions& o) {
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Method");
-    app.add_option("--error", o.error,
-                   "fast: mean relative error of the leaves' light to aim at (otherwise 0.15 for 15 %; pixels err "
-                   "less, as they add up many leaves)")
-        ->type_name("E")
+    add_error_option(app, o.error,
+                     "fast: mean relative error of the leaves' light to aim at (otherwise 0.15 for 15 %; pixels err "
+                     "less, as they add up many leaves)")
         ->group("Method");
     app.add_option("--seed", o.seed, "Seed of random numbers (another tree: --set seed=N)")
         ->check(whole_number())
@@ -78,6 +69,11 @@ SceneDescription described_scene(const CLI::App& app, RenderCommandOptions& o) {
         refuse_tree_options(app, o.tree.name);
         return read_scene(o.tree.name, o.data);
     }
+    std::error_code ignored;
+    if (lower_ending(o.tree.name) == ".json" && !fs::is_regular_file(o.tree.name, ignored))
+        throw InputError("'" + o.tree.name + "' " +
+                         (fs::is_directory(o.tree.name, ignored) ? "is a folder" : "is not there") +
+                         "; give a scene or a species file (.json); 'kokage render --example' prints a scene");
     check_tree_source(o.tree);
     check_surroundings(o.surroundings);
     SceneDescription scene = scene_of_tree(o.tree);
@@ -114,8 +110,7 @@ bool is_exr(const fs::path& file) {
 void complete_outputs(RenderCommandOptions& o, const SceneDescription& scene) {
     if (o.outputs.empty())
         o.outputs = {scene.name + ".png"};
-    if (o.exposure_stops && std::all_of(o.outputs.begin(), o.outputs.end(), is_exr))
-        throw InputError("--exposure: .exr pictures hold the light as it is; leave it out, or write a .png");
+    check_exposure(o.exposure_stops, o.outputs);
     for (const fs::path& output : o.outputs)
         check_output(output, "the picture", {".png", ".exr"});
     if (!o.report.empty())
@@ -142,11 +137,8 @@ PictureOptions picture_options(const RenderCommandOptions& o, const SceneDescrip
     }
     picture.samples = o.samples.value_or(picture.samples);
     picture.seed = o.seed.value_or(picture.seed);
-    if (o.exposure_stops) {
-        if (!(std::abs(*o.exposure_stops) <= 100))
-            throw InputError("--exposure: it must be from -100 to 100 stops");
+    if (o.exposure_stops)
         picture.exposure_stops = o.exposure_stops;
-    }
     picture.layers = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
     return picture;
 }
@@ -187,8 +179,7 @@ CompleteRender complete_render_options(const CLI::App& app, RenderCommandOptions
     complete.options.method = method_of(o.method);
     if (o.error && complete.options.method == RenderMethod::path_traced)
         throw InputError("--error: path-traced has none but its noise, which falls with --samples; leave it out");
-    if (o.error && !(*o.error > 0 && *o.error <= 10))
-        throw InputError("--error: it must be above 0 (0.05 is 5 %) and at most 10");
+    check_error(o.error);
     complete.options.error = o.error.value_or(complete.options.error);
     complete.scene = described_scene(app, o);
     complete_outputs(o, complete.scene);

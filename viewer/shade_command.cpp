@@ -77,7 +77,8 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
         PatchOptions patch_options;
         patch_options.ground = obtain_ground(options.surroundings, s.environment, s.tree);
         if (patch_options.ground)
-            for (const std::string& hidden : drop_hidden_lights(s.environment, *patch_options.ground))
+            for (const std::string& hidden :
+                 drop_hidden_lights(options.surroundings, s.environment, *patch_options.ground))
                 s.warnings.push_back(hidden);
         s.environment.description += added_lights_text(options.surroundings, s.environment);
         PatchScene scene = make_patches(s.tree, patch_options, &s.origins);

@@ -1,13 +1,10 @@
 #include "viewer/shade_options.h"
 #include "common/services/error.h"
-#include "common/services/named_file.h"
 #include "viewer/scene/data_folder.h"
 #include "viewer/scene/output_check.h"
 #include "viewer/scene/values.h"
 #include "viewer/shade_lods.h"
-
-#include <cmath>
-#include <cstdlib>
+#include "viewer/shared_options.h"
 
 namespace kokage {
 namespace fs = std::filesystem;
@@ -19,9 +16,8 @@ void add_method_options(CLI::App& app, ShadeOptions& o) {
         ->type_name("NAME")
         ->capture_default_str()
         ->group("Method");
-    app.add_option("--error", o.error,
-                   "Mean relative error of the leaves to aim at, from which the effort follows (otherwise 0.05)")
-        ->type_name("E")
+    add_error_option(app, o.error,
+                     "Mean relative error of the leaves to aim at, from which the effort follows (otherwise 0.05)")
         ->group("Method");
     app.add_option("--effort", o.effort,
                    "The effort itself, in place of --error: bundles and light-maps: directions of lines; "
@@ -72,23 +68,14 @@ void add_output_options(CLI::App& app, ShadeOptions& o) {
         ->type_name("PIC.png")
         ->group("Output");
     app.add_option("--image-size", o.image_size, "Its size")->type_name("WxH")->capture_default_str()->group("Output");
-    app.add_option("--samples", o.picture.samples, "Its camera rays a pixel")
-        ->type_name("N")
-        ->check(CLI::Range(1, 65536).description(""))
-        ->capture_default_str()
-        ->group("Output");
-    app.add_option("--exposure", o.picture.exposure_stops,
-                   "Its exposure in stops (otherwise automatic); not for .exr and .hdr")
-        ->type_name("STOPS")
-        ->group("Output");
+    add_samples_option(app, o.picture.samples)->capture_default_str()->group("Output");
+    add_exposure_option(app, o.picture.exposure_stops, "automatic", ".exr and .hdr")->group("Output");
     app.add_option("--lods", o.lods,
                    "Levels of detail in this folder: three coarser trees that keep leaf area and light, an impostor of "
                    "four cards, a picture and figures of each one's error")
         ->type_name("FOLDER")
         ->group("Output");
-    app.add_option("--report", o.report, "What was done, counted, timed and skipped")
-        ->type_name("R.json")
-        ->group("Output");
+    add_report_option(app, o.report)->group("Output");
 }
 
 /// What would change nothing is a misunderstanding: better said than swallowed.
@@ -133,8 +120,7 @@ void complete_method(ShadeOptions& o) {
             "--error: light-maps can't see its own error; give --effort (directions of lines) and --maps instead");
     if (o.error && s.effort > 0)
         throw InputError("--error and --effort contradict one another; leave one of them out");
-    if (o.error && !(*o.error > 0 && *o.error <= 10))
-        throw InputError("--error: it must be above 0 (0.05 is 5 %) and at most 10");
+    check_error(o.error);
     s.error = o.error.value_or(0.05);
     if (s.effort < 0 || s.maps < 0 || s.max_bounces < 0)
         throw InputError("--effort, --maps and --bounces can't be negative");
@@ -171,11 +157,7 @@ void complete_outputs(ShadeOptions& o) {
     o.picture.width = size.width;
     o.picture.height = size.height;
     o.picture.seed = o.shading.seed;
-    if (o.picture.exposure_stops && !(std::abs(*o.picture.exposure_stops) <= 100))
-        throw InputError("--exposure: it must be from -100 to 100 stops");
-    const std::string ending = lower_ending(o.image);
-    if (o.picture.exposure_stops && (ending == ".exr" || ending == ".hdr"))
-        throw InputError("--exposure: " + ending + " pictures hold the light as it is; leave it out, or write a .png");
+    check_exposure(o.picture.exposure_stops, o.image.empty() ? std::vector<fs::path>() : std::vector{o.image});
     if (o.surroundings.ground == false)
         o.picture.ground = PictureGround::none;
     if (!o.output.empty())

@@ -133,7 +133,7 @@ void repair_pixels(Image& image, const std::string& name, bool strict, Environme
         throw InputError("environment '" + name + "': " + place(bad.front().x, bad.front().y) + " is " + value +
                          " in channel " + std::to_string(bad.front().channel) + ", " +
                          counted(bad.size(), "such value", "such values") +
-                         " in all; mend the image, or leave out --strict to have them repaired");
+                         " in all; mend the image, or have them repaired by leaving out strict reading");
     }
     std::array<std::vector<std::pair<int, int>>, 3> holes;
     for (const BadValue& value : bad) {

@@ -24,6 +24,11 @@ std::string syntax_complaint(const std::string& what) {
     return what.substr(at, colon - at) + ": not JSON (" + rest.substr(0, 160) + ")";
 }
 
+std::string without_quotes(std::string text) {
+    std::erase(text, '\'');
+    return text;
+}
+
 /// A token of a JSON pointer.
 std::string escaped(const std::string& key) {
     std::string token;
@@ -80,8 +85,14 @@ Json parse_json(std::string_view text, const std::string& file, const std::strin
         return Json::parse(text, watch, true, true);
     } catch (const Json::parse_error& error) {
         throw InputError(file + ": " + syntax_complaint(error.what()) + mend);
-    } catch (const Json::out_of_range&) {
-        throw InputError(file + ": a number is too large to be one" + mend);
+    } catch (const Json::out_of_range& error) { // a number, whose event has not come
+        if (!open.empty() && open.back().is_array)
+            open.back().key = std::to_string(open.back().elements);
+        const std::string what = error.what(), pointer = pointer_to(open);
+        const std::size_t quote = what.find('\'');
+        throw InputError(file + ": " + (pointer.empty() ? "" : pointer + ": ") + "found " +
+                         (quote == std::string::npos ? "a number" : shown_name(without_quotes(what.substr(quote)))) +
+                         ", which is too large; numbers reach to 1.7e308" + mend);
     }
 }
 

@@ -9,8 +9,6 @@
 #include <OpenImageIO/imageio.h>
 #include <algorithm>
 #include <array>
-#include <charconv>
-#include <cmath>
 #include <cstring>
 
 namespace kokage {
@@ -133,19 +131,6 @@ Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header)
         std::copy_n(&texel.x, 3, image.pixels.begin() + std::ptrdiff_t(3 * i));
     }
     return image;
-}
-
-std::string number_text(double value) {
-    std::array<char, 32> text{};
-    return {text.data(), std::to_chars(text.data(), text.data() + text.size(), value).ptr};
-}
-
-std::optional<double> number_from_text(const std::string& text) {
-    double value = 0;
-    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-    if (error != std::errc() || end != text.data() + text.size() || !std::isfinite(value))
-        return std::nullopt;
-    return value;
 }
 
 } // namespace kokage

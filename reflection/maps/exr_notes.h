@@ -6,7 +6,6 @@
 
 #include <filesystem>
 #include <map>
-#include <optional>
 #include <string>
 
 namespace kokage {
@@ -44,10 +43,5 @@ ExrHeader read_exr_header(const std::filesystem::path& path);
 /// The pixels that belong to a header. Throws InputError where they can't be read whole, or differ from those that were
 /// written.
 Image read_noted_exr(const std::filesystem::path& path, const ExrHeader& header);
-
-/// The shortest text that reads back as the same number.
-std::string number_text(double value);
-/// Nothing for what is no finite number.
-std::optional<double> number_from_text(const std::string& text);
 
 } // namespace kokage

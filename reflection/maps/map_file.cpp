@@ -2,6 +2,7 @@
 
 #include "common/services/error.h"
 #include "common/services/named_file.h"
+#include "common/services/number_text.h"
 #include "reflection/maps/exr_notes.h"
 #include "reflection/maps/shell_atlas.h"
 

@@ -1,20 +1,16 @@
 #include "viewer/scene/assemble_scene.h"
 #include "common/services/count_text.h"
-#include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "trees/merge_trees.h"
-#include "viewer/scene/material_relief.h"
 #include "viewer/scene/object_tree.h"
-#include "viewer/scene/scene_materials.h"
 #include "viewer/scene/scene_memory.h"
-#include "viewer/scene/shaded_scene.h"
+#include "viewer/scene/scene_messages.h"
+#include "viewer/scene/scene_surfaces.h"
 #include "viewer/scene/stage_clock.h"
 
 #include <algorithm>
 #include <limits>
-#include <set>
 #include <sstream>
-#include <tuple>
 
 namespace kokage {
 namespace {
@@ -60,7 +56,8 @@ glm::dvec3 foot_of(const Tree& tree, const Box& box) {
 class SceneAssembly {
   public:
     SceneAssembly(const SceneDescription& description, Progress& progress)
-        : description_(description), progress_(progress) {}
+        : description_(description), messages_(description.file), progress_(progress),
+          surfaces_(description, messages_) {}
 
     AssembledScene assemble() {
         check_description();
@@ -92,26 +89,12 @@ class SceneAssembly {
         glm::dvec3 foot{0.0};
     };
 
-    [[noreturn]] void fail(const std::string& pointer, const std::string& what) const {
-        const std::string where = description_.file.empty() ? "" : description_.file.string() + ": ";
-        throw InputError(where + (pointer.empty() ? "" : pointer + ": ") + what);
-    }
-
-    template <typename Work>
-    auto told_at(const std::string& pointer, Work&& work) const {
-        try {
-            return work();
-        } catch (const InputError& error) {
-            fail(pointer, error.what());
-        }
-    }
-
     void check_placement(const Placement& placement, const std::string& pointer) const {
         const auto all_finite = [](const glm::dvec3& v) { return std::isfinite(glm::dot(v, v)); };
         if (!all_finite(placement.at) || !std::isfinite(placement.turn_degrees))
-            fail(pointer, "its place must be finite numbers");
+            messages_.fail(pointer, "its place must be finite numbers");
         if (!(placement.size > 0) || !std::isfinite(placement.size))
-            fail(pointer + "/size", "it is " + std::to_string(placement.size) + "; it must be above 0");
+            messages_.fail(pointer + "/size", "it is " + std::to_string(placement.size) + "; it must be above 0");
     }
 
     double asked_leaves(const PlacedTree& placed) const {
@@ -124,19 +107,21 @@ class SceneAssembly {
         double leaves = 0;
         for (const PlacedTree& placed : description_.trees) {
             check_placement(placed.placement, placed.pointer);
-            leaves += told_at(placed.pointer, [&] { return asked_leaves(placed); });
+            leaves += messages_.told_at(placed.pointer, [&] { return asked_leaves(placed); });
         }
         for (const PlacedObject& placed : description_.objects)
             check_placement(placed.placement, placed.pointer);
         if (leaves > double(std::numeric_limits<std::int32_t>::max()))
-            fail("", count_text(std::uint64_t(leaves)) + " leaves can't be numbered; take fewer trees or --leaves");
-        told_at("", [&] {
-            check_memory(estimated_tree_bytes(leaves), "a scene of " + count_text(std::uint64_t(leaves)) + " leaves",
-                         "take fewer trees, or fewer leaves a tree");
+            messages_.fail("", count_text(std::uint64_t(leaves)) +
+                                   " leaves can't be numbered; take fewer trees, or fewer leaves a tree");
+        messages_.told_at("", [&] {
             check_memory(estimated_picture_bytes(description_.picture),
                          "a picture of " + std::to_string(description_.picture.width) + " x " +
                              std::to_string(description_.picture.height) + " pixels",
-                         "make it smaller");
+                         "make it smaller, or ask for fewer samples");
+            check_memory(estimated_tree_bytes(leaves) + estimated_picture_bytes(description_.picture),
+                         "a scene of " + count_text(std::uint64_t(leaves)) + " leaves, with its picture,",
+                         "take fewer trees, or fewer leaves a tree");
         });
     }
 
@@ -169,7 +154,7 @@ class SceneAssembly {
             const auto [entry, is_new] = trees_.try_emplace(key_of(source));
             LoadedTree& loaded = entry->second;
             if (is_new) {
-                loaded.tree = told_at(placed.pointer, [&] {
+                loaded.tree = messages_.told_at(placed.pointer, [&] {
                     check_tree_source(source);
                     return obtain_tree(source, progress_);
                 });
@@ -193,7 +178,7 @@ class SceneAssembly {
             const auto [entry, is_new] = objects_.try_emplace({placed.file, placed.up});
             ObjectTree& object = entry->second;
             if (is_new) {
-                object = told_at(placed.pointer, [&] {
+                object = messages_.told_at(placed.pointer, [&] {
                     return object_tree(read_object(placed.file, progress_), placed.file, placed.up == "z");
                 });
                 take_notes(object.tree);
@@ -219,11 +204,13 @@ class SceneAssembly {
             return 1;
         const double height = object.high.y - object.low.y;
         if (!(*placed.height_m > 0) || !std::isfinite(*placed.height_m))
-            fail(placed.pointer + "/height", "it is " + std::to_string(*placed.height_m) + "; it must be above 0");
+            messages_.fail(placed.pointer + "/height",
+                           "it is " + std::to_string(*placed.height_m) + "; it must be above 0");
         if (!(height > 0))
-            fail(placed.pointer + "/height", "'" + placed.file.string() +
-                                                 "' is flat: it has no height that could be scaled; give 'size' "
-                                                 "instead");
+            messages_.fail(placed.pointer + "/height",
+                           "'" + placed.file.string() +
+                               "' is flat: it has no height that could be scaled; give 'size' "
+                               "instead");
         return *placed.height_m / height;
     }
 
@@ -254,70 +241,24 @@ class SceneAssembly {
                 triangles += double(part.triangles.size());
             }
         }
-        told_at("", [&] {
-            check_memory(estimated_geometry_bytes(vertices, triangles),
-                         "a scene of " + count_text(std::uint64_t(triangles)) + " triangles",
-                         "take fewer trees or objects, or fewer leaves a tree");
+        messages_.told_at("", [&] {
+            check_memory(estimated_geometry_bytes(vertices, triangles) + estimated_picture_bytes(description_.picture),
+                         "a scene of " + count_text(std::uint64_t(triangles)) + " triangles, with its picture,",
+                         "take fewer trees or objects, fewer leaves a tree, or a smaller picture");
         });
         scene_.tree.origin = box.empty() ? glm::dvec3(0.0) : choose_origin(box.low, box.high);
         scene_.foot_height = lowest < kInfinity ? float(lowest - scene_.tree.origin.y) : 0.f;
     }
 
-    const MaterialDescription* material_named(const std::string& name, const std::string& pointer) {
-        if (name.empty())
-            return nullptr;
-        const auto found = description_.materials.find(name);
-        if (found == description_.materials.end())
-            fail(pointer, "there is no material '" + shown_name(name) + "'");
-        used_materials_.insert(name);
-        return &found->second;
-    }
-
-    std::uint32_t add_surface(const Thing& thing, std::size_t material, const std::string& name, float foot,
-                              float top) {
-        SceneSurface surface{thing.tree->materials[material], {}};
-        if (thing.finishes)
-            surface.finish = (*thing.finishes)[material];
-        surface.material.height_depth_m *= float(thing.placement.size); // metres on the tree as it was made
-        surface.material.height_tile_m *= float(thing.placement.size);
-        if (const MaterialDescription* description = material_named(name, thing.pointer))
-            surface = told_at(description->pointer,
-                              [&] { return changed_surface(std::move(surface), *description, textures_); });
-        scene_.tree.materials.push_back(surface.material);
-        surfaces_.push_back(std::move(surface));
-        heights_.emplace_back(foot, top);
-        return std::uint32_t(scene_.tree.materials.size() - 1);
-    }
-
-    /// The same tree or object in the same clothes shares its materials, unless they depend on where it stands.
-    const MaterialNumbers& dressed(const Thing& thing) {
-        const float foot = float(thing.box.low.y - scene_.tree.origin.y),
-                    top = float(thing.box.high.y - scene_.tree.origin.y);
-        const auto by_height = [&](const std::string& name) {
-            const MaterialDescription* material = material_named(name, thing.pointer);
-            return material && material->roughness_from_foot_to_top;
-        };
-        bool has_heights = false;
-        for (const TreeMaterial& material : thing.tree->materials)
-            has_heights |= bool(material.height_texture);
-        const bool depends = by_height(thing.leaf_material) || by_height(thing.bark_material);
-        const auto [entry, is_new] =
-            dressed_.try_emplace({thing.tree, thing.leaf_material, thing.bark_material, depends ? foot : 0.f,
-                                  depends ? top : 0.f, has_heights ? float(thing.placement.size) : 1.f});
-        MaterialNumbers& result = entry->second;
-        if (!is_new)
-            return result;
-        const std::size_t count = thing.tree->materials.size();
-        result.bark.assign(count, kNone);
-        result.foliage.assign(count, kNone);
-        for (const TreePart& part : thing.tree->parts) {
-            const bool is_bark = part.kind == TreePartKind::bark;
-            std::uint32_t& number = (is_bark ? result.bark : result.foliage)[part.material];
-            if (number == kNone)
-                number =
-                    add_surface(thing, part.material, is_bark ? thing.bark_material : thing.leaf_material, foot, top);
-        }
-        return result;
+    Wearer wearer(const Thing& thing) const {
+        return {.tree = thing.tree,
+                .finishes = thing.finishes,
+                .size = thing.placement.size,
+                .leaf_material = thing.leaf_material,
+                .bark_material = thing.bark_material,
+                .pointer = thing.pointer,
+                .foot = float(thing.box.low.y - scene_.tree.origin.y),
+                .top = float(thing.box.high.y - scene_.tree.origin.y)};
     }
 
     void merge() {
@@ -326,7 +267,7 @@ class SceneAssembly {
         progress_.begin("placing trees and objects", things_.size());
         for (const Thing& thing : things_) {
             progress_.throw_if_stopped();
-            add_tree(scene_.tree, *thing.tree, thing.placement, dressed(thing));
+            add_tree(scene_.tree, *thing.tree, thing.placement, surfaces_.dress(wearer(thing), scene_.tree));
             if (!thing.finishes)
                 scene_.tree_parts = scene_.tree.parts.size();
             progress_.advance(1);
@@ -338,11 +279,13 @@ class SceneAssembly {
 
     void light() {
         EnvironmentReport& report = scene_.environment_report;
-        scene_.environment = obtain_environment(description_.surroundings, scene_.tree.origin, report, true,
-                                                description_.environment_turn_degrees);
+        scene_.environment = messages_.told_at(messages_.has_file() ? "/environment" : "", [&] {
+            return obtain_environment(description_.surroundings, scene_.tree.origin, report, true,
+                                      description_.environment_turn_degrees);
+        });
         scene_.report.warnings = report.warnings;
         if (const std::optional<std::string> night = night_warning(description_.surroundings))
-            scene_.report.warnings.push_back(*night);
+            scene_.report.warnings.push_back(messages_.in_file(*night));
         if (description_.environment_turn_degrees != 0 && !is_environment_image(description_.surroundings))
             scene_.report.warnings.push_back(
                 "the environment's turn changes nothing: it is no image (the sky's sun has "
@@ -353,62 +296,14 @@ class SceneAssembly {
         PatchOptions options;
         options.ground = obtain_ground(description_.surroundings, scene_.environment, scene_.foot_height);
         if (options.ground)
-            for (const std::string& hidden : drop_hidden_lights(scene_.environment, *options.ground))
-                scene_.report.warnings.push_back(hidden);
+            for (const std::string& hidden :
+                 drop_hidden_lights(description_.surroundings, scene_.environment, *options.ground))
+                scene_.report.warnings.push_back(messages_.in_file(hidden));
         scene_.environment.description += added_lights_text(description_.surroundings, scene_.environment);
         scene_.patches = make_patches(scene_.tree, options, &scene_.origins);
         scene_.triangle_look = scene_.origins.triangle_part;
-        std::vector<Gloss> glosses;
-        std::vector<glm::vec3> means;
-        std::vector<LookRelief> reliefs;
-        MaterialReliefs heights;
-        for (std::uint32_t m = 0; m < surfaces_.size(); ++m) {
-            means.push_back(mean_base_color(scene_.tree, m, kind_of(m)));
-            glosses.push_back(gloss_of(surfaces_[m], means[m], heights_[m].first, heights_[m].second));
-            reliefs.push_back(relief_of(surfaces_[m], kind_of(m), heights));
-        }
-        for (const TreePart& part : scene_.tree.parts) {
-            scene_.looks.push_back(look_of(scene_.tree, part, means[part.material]));
-            scene_.looks.back().gloss = glosses[part.material];
-            if (!part.uvs.empty())
-                scene_.looks.back().relief = reliefs[part.material];
-        }
-        take_gloss_off(glosses);
-    }
-
-    LookRelief relief_of(const SceneSurface& surface, TreePartKind kind, MaterialReliefs& heights) {
-        if (kind == TreePartKind::foliage)
-            return {};
-        const Finish& finish = surface.finish;
-        // A tree's bark has heights of its own where it is thick, and its twigs none.
-        const bool own = !finish.relief || (finish.relief->heights.empty() && finish.relief->normals.empty() &&
-                                            !surface.material.height_texture);
-        return told_at("", [&] {
-            return !own ? heights.described(*finish.relief, surface.material, finish.pointer, scene_.report)
-                        : heights.own(surface.material);
-        });
-    }
-
-    /// Materials are not shared between foliage and bark here.
-    TreePartKind kind_of(std::uint32_t material) const {
-        for (const TreePart& part : scene_.tree.parts)
-            if (part.material == material)
-                return part.kind;
-        return TreePartKind::bark;
-    }
-
-    void take_gloss_off(const std::vector<Gloss>& glosses) {
-        std::vector<bool> done(scene_.patches.optics.size(), false);
-        for (const Patch& patch : scene_.patches.patches) {
-            if (patch.triangle_count == 0 || done[patch.optics])
-                continue;
-            done[patch.optics] = true;
-            const std::uint32_t material =
-                scene_.tree.parts[scene_.origins.triangle_part[patch.first_triangle]].material;
-            const glm::vec3 share = diffuse_share(surfaces_[material], glosses[material]);
-            scene_.patches.optics[patch.optics].reflectance *= share;
-            scene_.patches.optics[patch.optics].transmittance *= share;
-        }
+        scene_.looks = surfaces_.looks(scene_.tree, scene_.report);
+        surfaces_.take_gloss_off(scene_.tree, scene_.origins, scene_.patches);
     }
 
     void set_camera() {
@@ -422,7 +317,7 @@ class SceneAssembly {
             return;
         }
         if (asked.position || asked.target)
-            fail("/camera", "it has only one of position and target; give both, or neither");
+            messages_.fail("/camera", "it has only one of position and target; give both, or neither");
         const float azimuth = asked.azimuth_degrees ? float(*asked.azimuth_degrees * kPiDouble / 180)
                                                     : photographers_azimuth(scene_.environment);
         scene_.camera = frame_scene(scene_.patches, aspect, azimuth, angle);
@@ -431,15 +326,7 @@ class SceneAssembly {
     void report() {
         WorkReport& report = scene_.report;
         report.stages = clock_.stages();
-        std::size_t unused = 0;
-        std::string names;
-        for (const auto& [name, material] : description_.materials)
-            if (!used_materials_.contains(name)) {
-                names += (unused++ == 0 ? "'" : ", '") + shown_name(name) + "'";
-            }
-        if (unused > 0)
-            report.skips.push_back(
-                {counted(unused, "material", "materials"), "nothing wears " + names, "their textures were not loaded"});
+        surfaces_.report_skips(report);
         report.counts.push_back({"trees", description_.trees.size()});
         report.counts.push_back({"objects", description_.objects.size()});
         report.counts.push_back({"leaves", scene_.tree.leaves.size()});
@@ -447,20 +334,15 @@ class SceneAssembly {
         report.counts.push_back({"triangles", scene_.patches.triangles.size()});
     }
 
-    static constexpr std::uint32_t kNone = ~0u;
-
     const SceneDescription& description_;
+    const SceneMessages messages_;
     Progress& progress_;
     StageClock clock_;
     AssembledScene scene_;
     std::map<std::string, LoadedTree> trees_;
     std::map<std::pair<std::filesystem::path, std::string>, ObjectTree> objects_;
     std::vector<Thing> things_;
-    std::map<std::tuple<const Tree*, std::string, std::string, float, float, float>, MaterialNumbers> dressed_;
-    std::vector<SceneSurface> surfaces_; ///< of each of the tree's materials
-    std::vector<std::pair<float, float>> heights_;
-    std::set<std::string> used_materials_;
-    TextureFiles textures_;
+    SceneSurfaces surfaces_;
 };
 
 } // namespace

@@ -1,5 +1,4 @@
 #include "viewer/scene/material_relief.h"
-#include "common/services/error.h"
 #include "reflection/relief/integrate_normals.h"
 
 namespace kokage {
@@ -51,17 +50,17 @@ LookRelief MaterialReliefs::from_normals(const ReliefDescription& description, W
 }
 
 LookRelief MaterialReliefs::described(const ReliefDescription& description, const TreeMaterial& material,
-                                      const std::string& pointer, WorkReport& report) {
+                                      WorkReport& report) {
+    if (description.none)
+        return {};
     if (!description.heights.empty())
         return from_heights(description, report);
     if (!description.normals.empty())
         return from_normals(description, report);
     LookRelief relief = own(material);
-    if (!relief.heights)
-        throw InputError(pointer + ": relief: '" + material.name +
-                         "' has no heights of its own; give 'heights' or 'normals', or leave 'relief' out");
-    if (description.depth_m > 0)
-        relief.depth_m = float(description.depth_m);
+    if (relief.heights)
+        relief.depth_m =
+            description.depth_m > 0 ? float(description.depth_m) : relief.depth_m * float(description.scale);
     return relief;
 }
 

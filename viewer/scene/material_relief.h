@@ -15,10 +15,9 @@ class MaterialReliefs {
     /// The heights that a material brought with it (TreeMaterial::height_texture); none where it brought none.
     LookRelief own(const TreeMaterial& material);
     /// What a scene file asks for: an image of heights, a normal map's, or, where it names neither, the material's own
-    /// in another depth. What was repaired or is doubtful goes to the report's warnings. `pointer`: where it stands in
-    /// the file, for messages. Throws InputError.
-    LookRelief described(const ReliefDescription& description, const TreeMaterial& material, const std::string& pointer,
-                         WorkReport& report);
+    /// in another depth (none where it has none). What was repaired or is doubtful goes to the report's warnings.
+    /// Throws InputError.
+    LookRelief described(const ReliefDescription& description, const TreeMaterial& material, WorkReport& report);
 
   private:
     LookRelief from_heights(const ReliefDescription& description, WorkReport& report);

@@ -1,20 +1,12 @@
 // A scene file's environment, lights and ground.
 #include "common/environment/light_description.h"
+#include "common/services/number_text.h"
 #include "viewer/scene/scene_parts.h"
-
-#include <cstdio>
 
 namespace kokage {
 namespace {
 
 constexpr float kMostLight = 1e30f;
-
-/// So that it reads back as the same number.
-std::string number_text(double value) {
-    char text[40];
-    std::snprintf(text, sizeof text, "%.17g", value);
-    return text;
-}
 
 std::string color_text(const glm::vec3& color) {
     return number_text(double(color.r)) + "," + number_text(double(color.g)) + "," + number_text(double(color.b));

@@ -9,12 +9,22 @@ std::filesystem::path find_picture(const JsonReader& name, const SceneFiles& fil
 }
 
 ReliefDescription read_relief(const JsonReader& json, const SceneFiles& files) {
-    json.check_keys({"heights", "normals", "depth", "repeat"});
+    ReliefDescription relief;
+    if (json.is_boolean()) {
+        if (json.boolean())
+            json.fail("found true where false (none) or an object { } is needed; { } is the bark's own relief");
+        relief.none = true;
+        return relief;
+    }
+    json.check_keys({"heights", "normals", "depth", "repeat", "scale"});
     const auto heights = json.find("heights"), normals = json.find("normals"), depth = json.find("depth"),
-               repeat = json.find("repeat");
+               repeat = json.find("repeat"), scale = json.find("scale");
     if (heights && normals)
         json.fail("'heights' and 'normals' contradict one another; keep one of them");
-    ReliefDescription relief;
+    for (const char* key : {"heights", "normals", "depth"})
+        if (scale && json.find(key))
+            scale->fail("'scale' makes the bark's own relief deeper or shallower, and '" + std::string(key) +
+                        "' takes its place; keep one of them");
     if (heights) {
         relief.heights = find_picture(*heights, files);
         if (!depth)
@@ -32,6 +42,8 @@ ReliefDescription read_relief(const JsonReader& json, const SceneFiles& files) {
         repeat->fail("'repeat' and 'depth' contradict one another; keep one of them");
     if (depth)
         relief.depth_m = depth->number(1e-6, 10);
+    if (scale)
+        relief.scale = scale->number(0.01, 100);
     if (repeat)
         relief.repeat_m = repeat->number(1e-4, 1e4);
     return relief;

@@ -2,9 +2,9 @@
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "common/services/nearest_word.h"
+#include "common/services/number_text.h"
 #include "viewer/scene/scene_parts.h"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 
 namespace kokage {
@@ -39,17 +39,12 @@ void at(const JsonReader& json, Work&& work) {
     }
 }
 
-std::string value_text(double value) {
-    char text[64];
-    return {text, std::to_chars(text, text + sizeof text, value).ptr};
-}
-
 /// What `value` sets, as text.
 std::string setting_text(const std::string& name, const JsonReader& value, GrowthParameters& parameters) {
     if (!value.is_string()) {
         const double number = value.number(-1e300, 1e300);
         at(value, [&] { set_parameter(parameters, name, number); });
-        return name + "=" + value_text(number);
+        return name + "=" + number_text(number);
     }
     const std::string text = value.text();
     at(value, [&] { set_parameter(parameters, name, std::string_view(text)); });

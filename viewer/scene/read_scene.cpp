@@ -109,7 +109,11 @@ SceneDescription read_scene(const fs::path& file, const fs::path& data) {
     SceneDescription scene;
     scene.name = file.stem().string();
     scene.file = file;
-    scene.surroundings.option = "environment";
+    scene.surroundings.words = {.environment = "/environment",
+                                .sun = "/environment/sky/sun",
+                                .lights = "/lights",
+                                .no_ground = "\"ground\": false",
+                                .exposure = "'exposure' in 'output'"};
     if (const auto schema = json.find("$schema"))
         schema->text();
     if (const auto environment = json.find("environment"))

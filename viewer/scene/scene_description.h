@@ -16,9 +16,11 @@ namespace kokage {
 
 /// Relief of a material: where its heights come from and how large they are.
 struct ReliefDescription {
+    bool none = false;             ///< the bark's own is left out
     std::filesystem::path heights; ///< an image of heights, white = outside; empty: `normals`, or the bark's own
     std::filesystem::path normals; ///< an OpenGL normal map, whose heights are found
-    double depth_m = 0;            ///< from white to black; 0: as the bark's own
+    double depth_m = 0;            ///< from white to black; 0: as the bark's own, times `scale`
+    double scale = 1;
     double repeat_m = 0; ///< normals: width of a tile in metres, to give its heights a scale; 0: depth_m is known
 };
 

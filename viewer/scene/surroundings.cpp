@@ -11,6 +11,7 @@
 #include <cmath>
 #include <filesystem>
 #include <limits>
+#include <map>
 
 namespace kokage {
 namespace {
@@ -32,10 +33,10 @@ Daylight daylight(const Surroundings& surroundings) {
         result.turbidity = *surroundings.turbidity;
     if (surroundings.sun.empty())
         return result;
-    const std::vector<double> angles = numbers_from(surroundings.sun, "--sun");
+    const std::vector<double> angles = numbers_from(surroundings.sun, surroundings.words.sun);
     if (angles.size() != 2 || angles[1] < -90 || angles[1] > 90)
         throw InputError(
-            "--sun: '" + surroundings.sun +
+            surroundings.words.sun + ": '" + surroundings.sun +
             "' is not AZIMUTH,ELEVATION in degrees, such as 135,45 (azimuth 0 is north, -Z; 90 is east, +X)");
     result.sun_azimuth_degrees = angles[0];
     result.sun_elevation_degrees = angles[1];
@@ -62,11 +63,31 @@ std::optional<Environment> made_environment(const Surroundings& surroundings) {
         return analytic_sky(daylight(surroundings));
     if (split_kind(surroundings.environment, "constant", values))
         return constant_environment(
-            values.empty() ? glm::vec3(1.f) : color_from(values, surroundings.option + " constant", kHighestRadiance));
+            values.empty() ? glm::vec3(1.f)
+                           : color_from(values, surroundings.words.environment + " constant", kHighestRadiance));
     if (split_kind(surroundings.environment, "gradient", values))
-        return gradient(values, surroundings.option);
+        return gradient(values, surroundings.words.environment);
     return {};
 }
+
+/// What messages call lights, asked in the order in which the user gave those of one text.
+class LightNames {
+  public:
+    explicit LightNames(const Surroundings& surroundings) : surroundings_(surroundings) {}
+
+    std::string of(const std::string& text) {
+        if (surroundings_.words.lights.empty())
+            return "the light '" + text + "'";
+        const std::vector<std::string>& lights = surroundings_.lights;
+        std::size_t& next = next_[text];
+        next = std::size_t(std::find(lights.begin() + std::ptrdiff_t(next), lights.end(), text) - lights.begin()) + 1;
+        return surroundings_.words.lights + "/" + std::to_string(next - 1) + ": the light";
+    }
+
+  private:
+    const Surroundings& surroundings_;
+    std::map<std::string, std::size_t> next_; ///< where to look on for lights of a text
+};
 
 /// The lowest point of bark within a few radii of a stem's foot, or the foot itself.
 float lowest_bark_near(const Tree& tree, const Branch::Node& foot) {
@@ -168,9 +189,10 @@ void check_surroundings(const Surroundings& s) {
         return;
     std::error_code ignored;
     if (std::filesystem::is_directory(s.environment, ignored))
-        throw InputError(s.option + ": '" + s.environment + "' is a folder; give an image (.hdr, .exr, .png)");
+        throw InputError(s.words.environment + ": '" + s.environment +
+                         "' is a folder; give an image (.hdr, .exr, .png)");
     if (!std::filesystem::exists(s.environment, ignored))
-        throw InputError(s.option + ": there is no file '" + s.environment +
+        throw InputError(s.words.environment + ": there is no file '" + s.environment +
                          "'; give an image (.hdr, .exr, .png), or sky, constant or gradient");
 }
 
@@ -195,20 +217,21 @@ Environment obtain_environment(const Surroundings& s, const glm::dvec3& origin, 
     return environment;
 }
 
-std::vector<std::string> drop_hidden_lights(Environment& environment, const Ground& ground) {
+std::vector<std::string> drop_hidden_lights(const Surroundings& s, Environment& environment, const Ground& ground) {
     std::vector<std::string> dropped;
+    const std::string mend = " (" + s.words.no_ground + " lets light through from below)";
+    LightNames names(s);
     std::erase_if(environment.distant_lights, [&](const DistantLight& light) {
         const bool hidden = std::asin(std::clamp(light.direction.y, -1.f, 1.f)) + light.half_angle <= 0;
         if (hidden && light.texels.empty())
-            dropped.push_back("the light '" + light.name + "' is below the horizon: the ground hides it, and it is " +
-                              "left out (--no-ground lets light through from below)");
+            dropped.push_back(names.of(light.name) + " is below the horizon: the ground hides it, and it is left out" +
+                              mend);
         return hidden;
     });
     std::erase_if(environment.point_lights, [&](const PointLight& light) {
         const bool hidden = light.position.y < ground.height_m;
         if (hidden)
-            dropped.push_back("the light '" + light.name + "' is under the ground, which hides it: it is left out " +
-                              "(--no-ground lets light through from below)");
+            dropped.push_back(names.of(light.name) + " is under the ground, which hides it: it is left out" + mend);
         return hidden;
     });
     return dropped;
@@ -233,9 +256,11 @@ std::string added_lights_text(const Surroundings& s, const Environment& environm
 std::optional<std::string> night_warning(const Surroundings& s) {
     if (s.environment != "sky" || s.sun.empty() || sun_irradiance(daylight(s)) != glm::vec3(0.f))
         return {};
-    return "--sun: the sun is below the horizon and gives no light; there is no night sky (no stars, no moon): what "
+    return s.words.sun +
+           ": the sun is below the horizon and gives no light; there is no night sky (no stars, no moon): what "
            "lights the tree is the sky of sunset, only dimmer, and automatic exposure brightens the picture again "
-           "(give --exposure for one that is dark)";
+           "(give " +
+           s.words.exposure + " for one that is dark)";
 }
 
 std::optional<Ground> obtain_ground(const Surroundings& s, const Environment& environment, const Tree& tree) {

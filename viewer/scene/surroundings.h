@@ -11,15 +11,22 @@
 
 namespace kokage {
 
+/// What messages call its parts: options, or, of a scene file, places.
+struct SurroundingsWords {
+    std::string environment = "--environment", sun = "--sun";
+    std::string lights; ///< "/lights": a light's place is told; empty: its text
+    std::string no_ground = "--no-ground", exposure = "--exposure";
+};
+
 struct Surroundings {
-    std::string option = "--environment"; ///< what the environment is called in messages
-    std::string environment = "sky";      ///< sky, constant[:R,G,B], gradient[:9 numbers] or a file
-    std::string sun;                      ///< sky: "AZIMUTH,ELEVATION" in degrees; empty = the default place
-    std::optional<double> turbidity;      ///< sky: haze
-    std::vector<std::string> lights;      ///< as common/environment/light_description.h reads them
-    bool strict = false;                  ///< images: refuse bad pixels
-    std::optional<bool> ground;           ///< empty: where the environment has no lower half
-    std::string ground_albedo;            ///< a colour; empty = dry grass
+    SurroundingsWords words;
+    std::string environment = "sky"; ///< sky, constant[:R,G,B], gradient[:9 numbers] or a file
+    std::string sun;                 ///< sky: "AZIMUTH,ELEVATION" in degrees; empty = the default place
+    std::optional<double> turbidity; ///< sky: haze
+    std::vector<std::string> lights; ///< as common/environment/light_description.h reads them
+    bool strict = false;             ///< images: refuse bad pixels
+    std::optional<bool> ground;      ///< empty: where the environment has no lower half
+    std::string ground_albedo;       ///< a colour; empty = dry grass
 };
 
 void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
@@ -44,7 +51,8 @@ float foot_height(const Tree& tree);
 
 /// Takes out the lights that the ground hides from everything above it: distant ones wholly below the horizon, points
 /// under the ground. Gives back a sentence for each light that the user added; those found in an image go silently.
-std::vector<std::string> drop_hidden_lights(Environment& environment, const Ground& ground);
+std::vector<std::string> drop_hidden_lights(const Surroundings& surroundings, Environment& environment,
+                                            const Ground& ground);
 
 /// ", with the lights sun:1,2,3 + point:4,5,6,7 and 3 more": those of the user that are (still) in the environment.
 std::string added_lights_text(const Surroundings& surroundings, const Environment& environment);

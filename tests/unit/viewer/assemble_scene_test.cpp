@@ -128,6 +128,61 @@ TEST(AssembleScene, ReliefGrowsWithItsTree) {
     EXPECT_NE(scene.tree.parts[0].material, scene.tree.parts[parts].material);
 }
 
+/// Depths of an oak's own relief whose bark wears this, and what is warned of.
+std::pair<std::vector<float>, std::vector<std::string>> bark_reliefs(const std::optional<ReliefDescription>& relief,
+                                                                     bool on_leaves = false) {
+    SceneDescription description = constant_scene();
+    description.trees = {tree_at("oak", 50, {0, 0, 0})};
+    description.materials["worn"].relief = relief;
+    description.materials["worn"].pointer = "/materials/worn";
+    (on_leaves ? description.trees[0].leaf_material : description.trees[0].bark_material) = "worn";
+    const AssembledScene scene = assembled(description);
+    std::vector<float> depths;
+    for (const SurfaceLook& look : scene.looks)
+        if (look.relief.heights)
+            depths.push_back(look.relief.depth_m);
+    return {depths, scene.report.warnings};
+}
+
+TEST(AssembleScene, BarksOwnReliefIsScaledSetOrLeftOut) {
+    const auto [own, quiet] = bark_reliefs(std::nullopt);
+    ASSERT_FALSE(own.empty());
+    EXPECT_TRUE(quiet.empty());
+    ReliefDescription scaled, set, none;
+    scaled.scale = 2.5;
+    set.depth_m = 0.07;
+    none.none = true;
+    const auto [deeper, quiet_too] = bark_reliefs(scaled);
+    ASSERT_EQ(deeper.size(), own.size());
+    for (std::size_t k = 0; k < own.size(); ++k)
+        EXPECT_FLOAT_EQ(deeper[k], 2.5f * own[k]);
+    EXPECT_TRUE(quiet_too.empty());
+    for (const float depth : bark_reliefs(set).first)
+        EXPECT_FLOAT_EQ(depth, 0.07f);
+    const auto [left, still] = bark_reliefs(none);
+    EXPECT_TRUE(left.empty());
+    EXPECT_TRUE(still.empty());
+    // Leaves have none: what is asked of them changes nothing, and is said.
+    const auto [of_bark, warnings] = bark_reliefs(scaled, true);
+    EXPECT_EQ(of_bark, own);
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_EQ(warnings[0], "/materials/worn/relief: it changes nothing: leaves have no relief");
+}
+
+TEST(AssembleScene, ReliefOfWhatHasNoneIsWarnedOf) {
+    const TemporaryFolder folder;
+    SceneDescription description = constant_scene();
+    description.objects = {object_at(write_ball(folder), {0, 0, 0})};
+    description.objects[0].material = "worn";
+    description.materials["worn"].relief.emplace();
+    description.materials["worn"].pointer = "/materials/worn";
+    const std::vector<std::string> warnings = assembled(description).report.warnings;
+    ASSERT_EQ(warnings.size(), 1u);
+    EXPECT_NE(warnings[0].find("/materials/worn/relief: it changes nothing: what wears it has no texture coordinates"),
+              std::string::npos)
+        << warnings[0];
+}
+
 TEST(AssembleScene, SeedsMakeDifferentTrees) {
     SceneDescription description = constant_scene();
     description.trees = {tree_at("oak", 80, {0, 0, 0}, 1), tree_at("oak", 80, {0, 0, 0}, 2)};
@@ -333,6 +388,14 @@ TEST(AssembleScene, WhatCannotBeIsRefused) {
     description.trees[0].placement.size = 1;
     description.trees[0].placement.at.x = NAN;
     EXPECT_NE(complaint(description).find("/trees/0: "), std::string::npos) << complaint(description);
+}
+
+TEST(AssembleScene, ObjectsWithoutSizeAreRefused) {
+    const TemporaryFolder folder;
+    write_text(folder / "point.obj", "v 1 1 1\nv 1 1 1\nv 1 1 1\nf 1 2 3\n");
+    SceneDescription description = constant_scene();
+    description.objects = {object_at(folder / "point.obj", {0, 0, 0})};
+    EXPECT_NE(complaint(description).find("point.obj: it has no size"), std::string::npos) << complaint(description);
 }
 
 TEST(AssembleScene, MaterialsThatNothingWearsAreNotLoaded) {

@@ -66,6 +66,17 @@ TEST(ReadScene, ReadsAllThatAScenesCanSay) {
     EXPECT_TRUE(scene.warnings.empty());
 }
 
+TEST(ReadScene, ReliefIsScaledOrLeftOut) {
+    const SceneFolder folder;
+    nlohmann::json text = SceneFolder::good_scene();
+    text["materials"]["bark"]["relief"] = false;
+    text["materials"]["leaf"]["relief"] = {{"scale", 2.5}};
+    const SceneDescription scene = folder.read(text.dump());
+    EXPECT_TRUE(scene.materials.at("bark").relief.value().none);
+    EXPECT_EQ(scene.materials.at("leaf").relief.value().scale, 2.5);
+    EXPECT_FALSE(scene.materials.at("leaf").relief->none);
+}
+
 TEST(ReadScene, KnowsEnvironmentsByWordsAndByKind) {
     const SceneFolder folder;
     const auto with = [&](const char* environment) {
@@ -181,6 +192,11 @@ TEST(ReadScene, RefusesBadMaterials) {
         {"/materials/bark/relief/depth", "0", "/materials/bark/relief/depth: found 0 where a number from"},
         {"/materials/glaze/relief/repeat", nullptr, "/materials/glaze/relief: 'normals' needs 'depth'"},
         {"/materials/glaze/relief/depth", "0.1", "/materials/glaze/relief/repeat: 'repeat' and 'depth' contradict"},
+        {"/materials/bark/relief", "true", "/materials/bark/relief: found true where false (none) or an object"},
+        {"/materials/bark/relief", "0", "/materials/bark/relief: found 0 where an object { } is needed"},
+        {"/materials/bark/relief/scale", "2", "/materials/bark/relief/scale: 'scale' makes the bark's own relief"},
+        {"/materials/leaf/relief/scale", "0", "/materials/leaf/relief/scale: found 0 where a number from 0.01"},
+        {"/materials/leaf/relief", R"({"scale": 2, "depth": 1})", "/materials/leaf/relief/scale: 'scale' makes"},
         {"/materials/leaf/relief/repeat", "1", "/materials/leaf/relief/repeat: 'repeat' gives 'normals' a scale"},
         {"/trees/0/leaf_material", "\"laef\"",
          "/trees/0/leaf_material: no material is called 'laef'; did you mean 'leaf'?"},
@@ -260,7 +276,13 @@ TEST(ReadScene, RefusesWhatIsNoScene) {
         {"{}", "'kokage_scene' is missing"},
         {R"({"kokage_scene": 1})", "there is nothing to see: give 'trees' or 'objects'"},
         {R"({"kokage_scene": 1, "trees": [], "objects": []})", "there is nothing to see"},
-        {R"({"kokage_scene": 1, "trees": [{"species": "oak", "at": [1e999, 0]}]})", "a number is too large"},
+        {R"({"kokage_scene": 1, "trees": [{"species": "oak", "at": [1e999, 0]}]})",
+         ": /trees/0/at/0: found 1e999, which is too large"},
+        {R"({"kokage_scene": 1, "trees": [{"species": "oak", "at": [0, -1e400]}]})",
+         ": /trees/0/at/1: found -1e400, which is too large"},
+        {R"({"kokage_scene": 1, "camera": {"field_of_view": 1e999}})",
+         ": /camera/field_of_view: found 1e999, which is too large"},
+        {"1e999", ": found 1e999, which is too large"},
         {R"({"kokage_scene": 1, "trees": [{"species": "oak", "turn": NaN}]})", "not JSON"},
         {R"({"kokage_scene": 1, "trees": [{"species": "oak"}], "trees": []})", ": /trees: 'trees' stands there twice"},
         {R"({"kokage_scene": 1, "trees": [{}, {"at": [1, 2], "turn": 1, "turn": 2}]})",

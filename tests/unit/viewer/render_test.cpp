@@ -1,7 +1,9 @@
 // `kokage render` as a user runs it, on small scenes.
 #include "common/scene/image_file.h"
 #include "common/scene/image_layers.h"
+#include "common/services/parallel.h"
 #include "tests/support/program_run.h"
+#include "viewer/scene/scene_memory.h"
 
 #include <algorithm>
 #include <cmath>
@@ -187,6 +189,10 @@ TEST(Render, ComparesRadianceOfLayeredPictures) {
     for (const char* layer : {"albedo", "direct", "indirect", "reflection"})
         EXPECT_TRUE(report["layers"].contains(layer)) << layer;
     EXPECT_LT(report["layers"]["albedo"]["mean"], 0.05);
+    EXPECT_LT(report["layers"]["depth"]["p95"], 5);
+    EXPECT_LT(report["layers"]["depth"]["pixels_finite_in_one"], 64 * 48 / 4);
+    EXPECT_GT(report["layers"]["leaf"]["differing_share"], 0);
+    EXPECT_LT(report["layers"]["leaf"]["differing_share"], 0.5);
 }
 
 TEST(Render, PrintsSchemaAndAnExampleThatReads) {
@@ -223,7 +229,7 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
     const std::vector<std::pair<Words, const char*>> cases = {
         {{"bad.json"}, "bad.json: /trees/0/at/0: found \"x\" where a number from -10000 to 10000 is needed"},
         {{"broken.json"}, "broken.json: line 1"},
-        {{"none.json"}, "there is no species file 'none.json'"},
+        {{"none.json"}, "'none.json' is not there; give a scene or a species file"},
         {{"garden.json", "--leaves", "10"}, "--leaves: it is for a single tree; the scene 'garden.json' says"},
         {{"garden.json", "--sun", "10,10"}, "--sun: it is for a single tree"},
         {{"garden.json", "--no-ground"}, "--no-ground: it is for a single tree"},
@@ -251,6 +257,58 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
     }
     EXPECT_EQ(folder.files(), before);
     EXPECT_EQ(read_text(folder / "a.png"), "former");
+}
+
+TEST(Render, EstimatesTheMemoryOfPictures) {
+    TemporaryFolder folder;
+    small_scene(folder); // writes box.obj; nothing else here that takes memory
+    write(folder / "box.json", R"({"kokage_scene": 1, "environment": {"constant": 1},
+        "materials": {"matt": {"index_of_refraction": 1}}, "objects": [{"file": "box.obj", "material": "matt"}]})");
+    const Words few = {"render", "box.json", "--samples", "1", "--threads", "2", "--quiet"};
+    const auto megabytes = [&](const Words& more) {
+        const ProgramRun run = run_kokage(joined(joined(few, more), {"--report", "r.json"}), folder.path());
+        EXPECT_EQ(run.status, 0) << run.errors;
+        return Json::parse(read_text(folder / "r.json"))["peak_memory_bytes"].get<double>() / 1e6;
+    };
+    const double without = megabytes({"--size", "16x12"});
+    set_thread_count(2);
+    for (const bool layers : {false, true}) {
+        PictureOptions options;
+        options.width = 2000;
+        options.height = 1000;
+        options.samples = 1;
+        options.layers = layers;
+        const double estimated = estimated_picture_bytes(options) / 1e6,
+                     taken = megabytes({"--size", "2000x1000", "-o", layers ? "a.exr" : "a.png"}) - without;
+        EXPECT_GT(estimated, 0.9 * taken);
+        EXPECT_LT(estimated, 2 * taken);
+    }
+    set_thread_count(0);
+}
+
+TEST(Render, WarnsInTheWordsOfSceneFiles) {
+    TemporaryFolder folder;
+    write(folder / "night.json", R"({
+        "kokage_scene": 1, "environment": {"sky": {"sun": [90, -10]}},
+        "lights": [{"sun": [10, 20], "irradiance": 1}, {"directional": [10, -20.1], "irradiance": [0.1, 1, 2]},
+                   {"directional": [10, -20.1], "irradiance": [0.1, 1, 2]},
+                   {"point": [1, -2, 1], "intensity": 5}],
+        "trees": [{"species": "oak", "leaves": 20}], "output": {"size": [16, 12], "samples": 1}})");
+    const ProgramRun run = run_kokage({"render", "night.json", "--quiet"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const std::string beginning = "kokage: warning: night.json: ";
+    for (const std::string warning :
+         {"/environment/sky/sun: the sun is below the horizon", "/lights/1: the light is below the horizon",
+          "/lights/2: the light is below the horizon", "/lights/3: the light is under the ground"})
+        EXPECT_NE(run.errors.find(beginning + warning), std::string::npos) << run.errors;
+    EXPECT_EQ(run.errors.find("--"), std::string::npos) << run.errors;
+    EXPECT_NE(run.errors.find("(\"ground\": false lets light through from below)"), std::string::npos) << run.errors;
+
+    write(folder / "studio.hdr", "no picture");
+    write(folder / "studio.json", R"({"kokage_scene": 1, "environment": "studio.hdr", "trees": [{"species": "oak"}]})");
+    const ProgramRun broken = run_kokage({"render", "studio.json"}, folder.path());
+    EXPECT_EQ(broken.status, 2);
+    EXPECT_EQ(broken.errors.find("kokage: studio.json: /environment: "), 0u) << broken.errors;
 }
 
 TEST(Render, TakesASpeciesFileAsATree) {
