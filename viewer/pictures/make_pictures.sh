@@ -44,7 +44,7 @@ oiiotool --nosoftwareattrib "${sheet[@]}" --mosaic:pad=4 5x4 --compression jpeg:
 
 # The sum over every pixel of the surroundings; the same through a reflection map; how far apart they are; the same without the horizon's correction.
 teapot=$work/teapot/teapot-forest_slope-hdr-mixed.png
-"$program" --quiet bench reflection --experiment teapot -o "$work/teapot"
+"$program" bench reflection --quiet --experiment teapot -o "$work/teapot"
 if [ -f "$teapot" ]; then
     oiiotool --nosoftwareattrib "$teapot" --compression jpeg:90 -o "$here/teapot.jpg"
 else
@@ -52,7 +52,7 @@ else
 fi
 
 # A ball of bark in light, and the reads of each of its pixels, method by method.
-"$program" --quiet bench relief --quick --experiment pictures -o "$work/relief"
+"$program" bench relief --quiet --quick --experiment pictures -o "$work/relief"
 oiiotool --nosoftwareattrib "$work/relief/relief-bark-256.png" --resize 1568x0 --compression jpeg:90 -o "$here/relief.jpg"
 
 tiles=() rows=0 columns=0
