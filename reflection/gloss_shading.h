@@ -2,12 +2,17 @@
 // What a surface's gloss shows a camera, split-off lights apart: surroundings through its lobe, and the scene where it
 // stands in front of them.
 #include "reflection/glossy_light.h"
-#include "reflection/ground_shading.h"
+#include "reflection/incoming_radiance.h"
 #include "reflection/surface_shading.h"
 
 #include <optional>
 
 namespace kokage {
+
+/// Light through a lobe: of the surroundings as if nothing stood in the way, and what one ray finds to change in it.
+struct LobeLight {
+    glm::vec3 open{0.f}, correction{0.f};
+};
 
 /// The lobe is looked up in a multi-scale map as if nothing stood in the way; one ray drawn from the lobe for every
 /// camera ray corrects it: where it meets the scene, what it meets replaces the surroundings behind it. So the map
@@ -16,24 +21,33 @@ class GlossShading {
   public:
     /// Bakes `lobes` (gloss_in_view.h; empty: all that is in view is matt), and says in the report what that was. All
     /// must outlive it.
-    GlossShading(const RayQueries& queries, const Environment& environment, const SurfaceShading& surfaces,
-                 const GroundLook& ground, const GroundShading& ground_light,
-                 const std::optional<RoughnessBounds>& lobes, Progress& progress, WorkReport& report);
+    GlossShading(const ShadedScene& scene, const Environment& environment, const SurfaceShading& surfaces,
+                 const IncomingRadiance& incoming, const std::optional<RoughnessBounds>& lobes, Progress& progress,
+                 WorkReport& report);
 
     /// K times the light through the lobe. A single ray's answer may be negative; their mean is not.
     glm::vec3 radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
                        ShadingScratch& scratch) const;
 
-  private:
-    glm::vec3 seen_along(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
-                         ShadingScratch& scratch, bool& met) const;
+    /// Through the lobe about the mirrored `direction`, a ray of which is drawn by two uniform numbers.
+    LobeLight light(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers, SampleIndex sample,
+                    ShadingScratch& scratch) const;
 
-    const RayQueries& queries_;
+    /// A flat patch of one roughness sees nearly the same in its lobe all over: which of lobe_count() it has. Empty: it
+    /// is not flat, not even or not glossy.
+    std::optional<std::uint32_t> lobe_of_patch(const SurfacePoint& at) const;
+    std::size_t lobe_count() const { return of_patches_.size(); }
+    /// Is taken from now on for all points of this side of the patch.
+    void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light) { of_patches_[lobe] = light; }
+
+  private:
+    const ShadedScene& scene_;
     const Environment& environment_;
     const SurfaceShading& surfaces_;
-    const GroundLook& ground_;
-    const GroundShading& ground_light_;
+    const IncomingRadiance& incoming_;
     std::optional<GlossyRemainder> remainder_; ///< empty: no gloss is drawn by itself
+    std::vector<bool> even_;                   ///< looks whose patches may share one lobe's light
+    std::vector<glm::vec3> of_patches_;        ///< front and back of each patch; negative: not known
 };
 
 } // namespace kokage

@@ -32,6 +32,15 @@ GroundRadiance GroundShading::radiance(const glm::vec3& origin, const glm::vec3&
                                : shadowed_backdrop(point, direction, sample, scratch);
 }
 
+glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
+                                      SampleIndex sample, ShadingScratch& scratch) const {
+    if (direction.y >= 0)
+        return glm::vec3(0.f);
+    const glm::vec3 point = look_.point(origin, direction, distance);
+    return look_.mean_albedo() ? light_at(point, *look_.mean_albedo(), sample, scratch).total
+                               : shadowed_backdrop(point, direction, sample, scratch).total;
+}
+
 GroundRadiance GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
                                        ShadingScratch& scratch) const {
     const Scattering scattering{kUp, albedo, glm::vec3(0.f)};

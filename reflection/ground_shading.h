@@ -23,6 +23,9 @@ class GroundShading {
     /// Radiance of the ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
     GroundRadiance radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
                             ShadingScratch& scratch) const;
+    /// For rays that left the scene: of the mean soil, without air before it, as the transport has it.
+    glm::vec3 met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
+                           ShadingScratch& scratch) const;
 
   private:
     GroundRadiance diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,

@@ -49,6 +49,9 @@ struct ShadedScene {
     std::vector<SurfaceLook> looks;           ///< indexed by triangle_look; empty = every patch has its mean colour
     std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
+    /// Per patch: what gloss sends on of the same light, spread as if it were diffuse; for rays that meet the patch after
+    /// the camera's. Empty: nothing is glossy.
+    std::vector<glm::vec3> gloss_front, gloss_back;
     std::vector<glm::vec3> radiance_front,
         radiance_back;                ///< per patch: all light, with what gloss mirrors as if it scattered it
     std::optional<float> foot_height; ///< where it stands if it has no ground of its own; empty = its lowest point
@@ -76,6 +79,9 @@ struct PictureOptions {
     int width = 1280, height = 960;
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
     int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
+    /// Rays a pixel that correct the solved light where the camera looks (final_gather.h); render_picture alone. 0: none;
+    /// negative: some, by `samples`.
+    int gather_rays = -1;
     std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
     bool pixel_shadows = true; ///< else surfaces show the light that was solved for their patches, gloss in it
     PictureGround ground = PictureGround::automatic;

@@ -2,6 +2,7 @@
 #include "common/services/parallel.h"
 #include "reflection/backdrop.h"
 #include "reflection/camera_rays.h"
+#include "reflection/final_gather.h"
 #include "reflection/gloss_in_view.h"
 #include "reflection/gloss_shading.h"
 #include "reflection/picture.h"
@@ -194,13 +195,15 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const CameraFrame frame = camera_frame(camera, options.width, options.height);
     const Backdrop backdrop(environment);
     const LightChoice lights(environment, options.light_samples);
-    const SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
+    SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
     const GroundLook ground(scene, environment, backdrop, camera, options);
     WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    const GlossShading gloss(queries, environment, surfaces, ground, ground_light,
-                             lobes_to_bake(scene, frame, options.skips, report), progress, report);
+    const IncomingRadiance incoming(queries, surfaces, ground, ground_light);
+    GlossShading gloss(scene, environment, surfaces, incoming, lobes_to_bake(scene, frame, options.skips, report),
+                       progress, report);
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress, report);
+    gather_for_camera(scene, relief, frame, options, incoming, environment, surfaces, gloss, progress, report);
     const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss, relief};
 
     Picture picture = PictureDrawing(renderer, frame, options).draw(progress);

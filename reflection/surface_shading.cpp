@@ -12,11 +12,8 @@
 namespace kokage {
 namespace {
 
-glm::vec3 interpolate(const std::vector<glm::vec3>& values, const glm::uvec3& corners, const glm::vec3& weights) {
-    return weights.x * values[corners.x] + weights.y * values[corners.y] + weights.z * values[corners.z];
-}
-
-constexpr float kMostTurn = 8; ///< times the light that the mesh gets
+constexpr float kMostTurn = 8;             ///< times the light that the mesh gets
+constexpr float kLeastMetRoughness = 0.3f; ///< of what rays after the camera's meet
 
 struct PositionHash {
     std::size_t operator()(const glm::vec3& p) const {
@@ -71,24 +68,48 @@ SurfaceShading::SurfaceShading(const ShadedScene& scene, const RayQueries& queri
                 throw InputError("picture: the scene has " + std::to_string(values->size()) + " " + side +
                                  " indirect radiances where " + std::to_string(scene.patches->patches.size()) +
                                  " are needed; give one for each");
-    smooth_solution();
+    place_light();
 }
 
-void SurfaceShading::smooth_solution() {
-    bool any = false;
+void SurfaceShading::place_light() {
+    const PatchScene& patches = *scene_.patches;
+    const std::size_t count = patches.patches.size();
+    bool any_smooth = false;
     for (const SurfaceLook& look : scene_.looks)
-        any |= look.smooth_normals;
-    if (!any)
-        return;
+        any_smooth |= look.smooth_normals;
+    std::uint32_t corners = 0;
+    if (any_smooth) {
+        // Corners are joined by place, because texture seams double them.
+        std::unordered_map<glm::vec3, std::uint32_t, PositionHash> numbers;
+        corner_.assign(patches.positions.size(), 0);
+        for (std::size_t t = 0; t < patches.triangles.size(); ++t)
+            if (scene_.looks[scene_.triangle_look[t]].smooth_normals)
+                for (int k = 0; k < 3; ++k) {
+                    const std::uint32_t position = patches.triangles[t][k];
+                    const auto [place, is_new] = numbers.try_emplace(patches.positions[position], corners);
+                    corners += is_new;
+                    corner_[position] = place->second;
+                }
+    }
+    light_.assign(2 * (count + corners), glm::vec3(0.f));
+    const std::vector<glm::vec3>*fronts = pixel_shadows_ ? &scene_.indirect_front : &scene_.radiance_front,
+          *backs = pixel_shadows_ ? &scene_.indirect_back : &scene_.radiance_back;
+    for (const auto& [side, of_patches] : {std::pair(std::size_t(0), fronts), {std::size_t(1), backs}}) {
+        std::copy(of_patches->begin(), of_patches->end(),
+                  light_.begin() + std::ptrdiff_t(side * (count + corners)));
+        if (any_smooth)
+            smooth_light(side, *of_patches);
+    }
+}
+
+void SurfaceShading::smooth_light(std::size_t side, const std::vector<glm::vec3>& of_patches) {
     struct Corner {
-        glm::dvec3 front{0.0}, back{0.0};
+        glm::dvec3 light{0.0};
         double area = 0;
     };
     const PatchScene& patches = *scene_.patches;
-    const std::vector<glm::vec3>& front = pixel_shadows_ ? scene_.indirect_front : scene_.radiance_front;
-    const std::vector<glm::vec3>& back = pixel_shadows_ ? scene_.indirect_back : scene_.radiance_back;
-    // Corners are joined by place, because texture seams double them.
-    std::unordered_map<glm::vec3, Corner, PositionHash> corners;
+    const std::size_t of_side = light_.size() / 2, count = patches.patches.size();
+    std::vector<Corner> corners(of_side - count);
     for (std::size_t t = 0; t < patches.triangles.size(); ++t) {
         if (!scene_.looks[scene_.triangle_look[t]].smooth_normals)
             continue;
@@ -96,33 +117,53 @@ void SurfaceShading::smooth_solution() {
         const glm::dvec3 a = patches.positions[triangle.x], b = patches.positions[triangle.y],
                          c = patches.positions[triangle.z];
         const double area = glm::length(glm::cross(b - a, c - a));
-        const std::uint32_t patch = patches.triangle_patch[t];
         for (int k = 0; k < 3; ++k) {
-            Corner& corner = corners[patches.positions[triangle[std::size_t(k)]]];
-            corner.front += area * glm::dvec3(front[patch]);
-            corner.back += area * glm::dvec3(back[patch]);
+            Corner& corner = corners[corner_[triangle[k]]];
+            corner.light += area * glm::dvec3(of_patches[patches.triangle_patch[t]]);
             corner.area += area;
         }
     }
-    smooth_front_.assign(patches.positions.size(), glm::vec3(0.f));
-    smooth_back_.assign(patches.positions.size(), glm::vec3(0.f));
-    for (std::size_t i = 0; i < patches.positions.size(); ++i)
-        if (const auto found = corners.find(patches.positions[i]); found != corners.end() && found->second.area > 0) {
-            smooth_front_[i] = found->second.front / found->second.area;
-            smooth_back_[i] = found->second.back / found->second.area;
-        }
+    for (std::size_t k = 0; k < corners.size(); ++k)
+        if (corners[k].area > 0)
+            light_[side * of_side + count + k] = corners[k].light / corners[k].area;
+}
+
+LightPlaces SurfaceShading::places(const SurfacePoint& at) const {
+    const auto count = std::uint32_t(scene_.patches->patches.size());
+    const std::uint32_t first = at.front ? 0 : std::uint32_t(light_.size() / 2);
+    if (!at.smooth)
+        return {{first + at.patch, first + at.patch, first + at.patch}, {1, 0, 0}};
+    const glm::uvec3 corners = scene_.patches->triangles[at.triangle];
+    return {{first + count + corner_[corners.x], first + count + corner_[corners.y],
+             first + count + corner_[corners.z]},
+            at.weights};
 }
 
 glm::vec3 SurfaceShading::solved(const SurfacePoint& at) const {
-    if (at.smooth)
-        return interpolate(at.front ? smooth_front_ : smooth_back_, scene_.patches->triangles[at.triangle], at.weights);
-    if (pixel_shadows_)
-        return at.front ? scene_.indirect_front[at.patch] : scene_.indirect_back[at.patch];
-    return at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch];
+    const LightPlaces from = places(at);
+    if (!at.smooth)
+        return light_[from.places[0]];
+    return from.weights.x * light_[from.places[0]] + from.weights.y * light_[from.places[1]] +
+           from.weights.z * light_[from.places[2]];
 }
 
 glm::vec3 SurfaceShading::solved_radiance(const SurfacePoint& at) const {
     return at.texture * (at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch]);
+}
+
+glm::vec3 SurfaceShading::met_radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                       ShadingScratch& scratch) const {
+    if (!pixel_shadows_)
+        return solved_radiance(at);
+    glm::vec3 light = at.front ? scene_.indirect_front[at.patch] : scene_.indirect_back[at.patch];
+    if (!scene_.gloss_front.empty())
+        light += at.front ? scene_.gloss_front[at.patch] : scene_.gloss_back[at.patch];
+    // A narrower lobe would show a light to one ray in a thousand.
+    const Scattering scattering{
+        at.normal, at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
+        std::max(at.roughness, kLeastMetRoughness)};
+    const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
+    return at.texture * light + lights.scattered + lights.reflected;
 }
 
 /// The solution has the light of the mesh. A slope of relief faces other light: as it would under the open sky, as far

@@ -6,6 +6,7 @@
 #include "reflection/picture.h"
 #include "reflection/surface_points.h"
 
+#include <array>
 #include <vector>
 
 namespace kokage {
@@ -36,6 +37,12 @@ struct SurfaceRadiance {
     glm::vec3 total() const { return direct + indirect + reflection; }
 };
 
+/// Where a point finds its solved light: at its patch, or on smooth surfaces at its triangle's corners.
+struct LightPlaces {
+    std::array<std::uint32_t, 3> places{};
+    glm::vec3 weights{1, 0, 0};
+};
+
 class SurfaceShading {
   public:
     /// Checks that the scene's arrays agree in size (InputError). All three must outlive it.
@@ -53,19 +60,33 @@ class SurfaceShading {
     bool has_pixel_shadows() const { return pixel_shadows_; }
     /// The solution's, of all light: no ray is traced.
     glm::vec3 solved_radiance(const SurfacePoint& at) const;
+    /// For rays that left a point of the scene: solved indirect light, and lights tested at this very point, because what
+    /// stands near enough to be met often stands in its light.
+    glm::vec3 met_radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                           ShadingScratch& scratch) const;
+    /// Radiance of the mesh, untextured: of indirect light, or of all light without shadows per pixel.
+    glm::vec3 solved(const SurfacePoint& at) const;
+
+    LightPlaces places(const SurfacePoint& at) const;
+    /// Of all sides of all patches and corners.
+    std::size_t light_count() const { return light_.size(); }
+    const glm::vec3& light(std::uint32_t place) const { return light_[place]; }
+    void set_light(std::uint32_t place, const glm::vec3& light) { light_[place] = light; }
 
   private:
-    glm::vec3 solved(const SurfacePoint& at) const;
     glm::vec3 indirect_on_relief(const SurfacePoint& at) const;
-    void smooth_solution();
+    void place_light();
+    void smooth_light(std::size_t side, const std::vector<glm::vec3>& of_patches);
 
     const ShadedScene& scene_;
     const RayQueries& queries_;
     const LightChoice& lights_;
     const SurfacePoints points_;
     bool pixel_shadows_;
-    /// Solved radiance at the corners of smooth surfaces (per position), the area mean of the patches that meet there.
-    std::vector<glm::vec3> smooth_front_, smooth_back_;
+    /// `solved` of all fronts, then of all backs; of either: of the patches, then at the corners of smooth surfaces,
+    /// which have the area mean of the patches that meet there.
+    std::vector<glm::vec3> light_;
+    std::vector<std::uint32_t> corner_; ///< per position, counted from the first: the same for all at one place
 };
 
 } // namespace kokage

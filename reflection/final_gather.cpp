@@ -1,0 +1,234 @@
+#include "reflection/final_gather.h"
+#include "common/environment/lat_long.h"
+#include "common/services/parallel.h"
+#include "common/services/random.h"
+#include "common/trace/path_numbers.h"
+#include "reflection/sampling.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace kokage {
+namespace {
+
+constexpr int kRowsAtOnce = 32;
+/// How many rays the mean correction of a look counts as, beside a patch's own: a ray's light varies about four times
+/// as much (in standard deviation) as patches' corrections do; of lobes, hardly more than they do.
+constexpr double kRaysOfPrior = 16, kLobesOfPrior = 2;
+/// Of a patch whose reflections are one: in larger ones the eye would miss their changing.
+constexpr int kMostPixels = 1000;
+
+/// Interleaves the bits, so that numbers in a row fill squares of the picture.
+std::uint32_t curve_index(std::uint32_t x, std::uint32_t y) {
+    const auto spread = [](std::uint32_t v) {
+        v = (v | v << 8) & 0x00ff00ffu;
+        v = (v | v << 4) & 0x0f0f0f0fu;
+        v = (v | v << 2) & 0x33333333u;
+        return (v | v << 1) & 0x55555555u;
+    };
+    return spread(x & 0xffffu) | spread(y & 0xffffu) << 1;
+}
+
+glm::vec3 about(const glm::vec3& local, const glm::vec3& axis) {
+    const glm::vec3 helper = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
+    const glm::vec3 tangent = glm::normalize(glm::cross(helper, axis)), bitangent = glm::cross(axis, tangent);
+    return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
+}
+
+/// What one ray from a seen point says of its patch.
+struct GatheredSample {
+    LightPlaces places;
+    glm::vec3 gathered{0.f}, solved{0.f};
+    std::uint32_t prior = 0; ///< look and side
+    std::optional<std::uint32_t> lobe;
+    LobeLight lobe_light;
+};
+
+class Gathering {
+  public:
+    Gathering(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
+              const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
+              const SurfaceShading& surfaces, const GlossShading& gloss)
+        : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
+          environment_(environment), surfaces_(surfaces), gloss_(gloss), rays_(gather_rays(options)) {}
+
+    /// What the camera sees in a row.
+    std::vector<GatheredSample> row(int y) const {
+        std::vector<PathNumbers> numbers;
+        std::vector<CameraHit> hits;
+        const std::uint64_t seed = hash64(options_.seed ^ 0x67617468657273ull);
+        for (int x = 0; x < options_.width; ++x)
+            for (int k = 0; k < rays_; ++k) {
+                numbers.emplace_back(seed, curve_index(std::uint32_t(x), std::uint32_t(y)) * std::uint32_t(rays_) +
+                                               std::uint32_t(k));
+                const glm::vec2 place = numbers.back().pair();
+                hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
+            }
+        relief_.first_hits(hits);
+        std::vector<GatheredSample> samples;
+        ShadingScratch scratch;
+        for (std::size_t k = 0; k < hits.size(); ++k)
+            if (hits[k].found && !hits[k].hit.ground)
+                samples.push_back(from(hits[k], numbers[k], scratch));
+        return samples;
+    }
+
+  private:
+    GatheredSample from(const CameraHit& hit, PathNumbers& numbers, ShadingScratch& scratch) const {
+        const SurfacePoint at = surfaces_.point(frame_.position, hit);
+        const PatchScene& patches = *scene_.patches;
+        const Optics& optics = patches.optics[patches.patches[at.patch].optics];
+        GatheredSample sample;
+        sample.places = surfaces_.places(at);
+        sample.solved = surfaces_.solved(at);
+        sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
+        const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
+        const float choice = numbers.single();
+        const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
+        sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
+        sample.lobe = gloss_.lobe_of_patch(at);
+        if (sample.lobe)
+            sample.lobe_light = gloss_.light(at, hit.direction, mirrored, index, scratch);
+        return sample;
+    }
+
+    /// One ray of the cosine lobe before or behind the surface.
+    glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, float choice, const glm::vec2& place,
+                              SampleIndex index, ShadingScratch& scratch) const {
+        const float reflected = luminance(optics.reflectance), transmitted = luminance(optics.transmittance);
+        if (!(reflected + transmitted > 0))
+            return glm::vec3(0.f);
+        const float share = reflected / (reflected + transmitted);
+        const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
+        const bool before = choice < share;
+        const glm::vec3 direction = about(cosine_direction(place), before ? normal : -normal);
+        const glm::vec3 seen = incoming_.along(at.point, direction, index, scratch)
+                                   .value_or(lat_long_radiance(environment_.remainder, direction));
+        return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
+    }
+
+    const ShadedScene& scene_;
+    const ReliefSurfaces& relief_;
+    const CameraFrame& frame_;
+    const PictureOptions& options_;
+    const IncomingRadiance& incoming_;
+    const Environment& environment_;
+    const SurfaceShading& surfaces_;
+    const GlossShading& gloss_;
+    const int rays_;
+};
+
+/// Sums over what the camera sees of each place of light, each look and each patch's lobe.
+class GatheredSums {
+  public:
+    GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes)
+        : of_places_(places), of_looks_(2 * looks), of_lobes_(lobes), lobes_of_looks_(2 * looks) {}
+
+    void add(const GatheredSample& sample) {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (const float weight = sample.places.weights[k]; weight > 0)
+                of_places_[sample.places.places[k]].add(weight, sample.gathered, sample.solved, sample.prior);
+        of_looks_[sample.prior].add(1, sample.gathered, sample.solved, sample.prior);
+        ++rays_;
+        if (!sample.lobe)
+            return;
+        of_lobes_[*sample.lobe].add(1, sample.lobe_light.correction, sample.lobe_light.open, sample.prior);
+        lobes_of_looks_[sample.prior].add(1, sample.lobe_light.correction, sample.lobe_light.open, sample.prior);
+        ++rays_;
+    }
+    std::uint64_t rays() const { return rays_; }
+
+    void correct(SurfaceShading& surfaces) const {
+        for (std::size_t place = 0; place < of_places_.size(); ++place)
+            if (const Sum& sum = of_places_[place]; sum.weight > 0) {
+                const glm::vec3 light = surfaces.light(std::uint32_t(place));
+                const glm::dvec3 rays_of_prior = kRaysOfPrior * glm::dvec3(sum.solved) / double(sum.weight);
+                surfaces.set_light(std::uint32_t(place),
+                                   corrected(light, glm::dvec3(sum.gathered) + rays_of_prior * ratio(of_looks_[sum.prior]),
+                                             glm::dvec3(sum.solved) + rays_of_prior));
+            }
+    }
+
+    /// Patches that cover more pixels than `most_rays` have their lobes traced pixel by pixel.
+    void give_lobes(GlossShading& gloss, float most_rays) const {
+        for (std::size_t lobe = 0; lobe < of_lobes_.size(); ++lobe)
+            if (const Sum& sum = of_lobes_[lobe]; sum.weight > 0 && sum.weight <= most_rays) {
+                const Sum& all = lobes_of_looks_[sum.prior];
+                const glm::dvec3 prior = kLobesOfPrior * glm::dvec3(all.gathered) / double(all.weight),
+                                 correction = (glm::dvec3(sum.gathered) + prior) / (double(sum.weight) + kLobesOfPrior);
+                gloss.set_light_of_patch(std::uint32_t(lobe),
+                                         glm::max(sum.solved / sum.weight + glm::vec3(correction), glm::vec3(0.f)));
+            }
+    }
+
+  private:
+    struct Sum {
+        glm::vec3 gathered{0.f}, solved{0.f};
+        float weight = 0;
+        std::uint32_t prior = 0;
+        void add(float w, const glm::vec3& of_ray, const glm::vec3& of_solution, std::uint32_t of_prior) {
+            gathered += w * of_ray;
+            solved += w * of_solution;
+            weight += w;
+            prior = of_prior;
+        }
+    };
+    static glm::dvec3 ratio(const Sum& sum) {
+        glm::dvec3 result(1.);
+        for (std::size_t c = 0; c < 3; ++c)
+            if (sum.solved[c] > 0)
+                result[c] = double(sum.gathered[c]) / double(sum.solved[c]);
+        return result;
+    }
+    /// What was solved as black has nothing to scale: it takes what was gathered.
+    static glm::vec3 corrected(const glm::vec3& light, const glm::dvec3& gathered, const glm::dvec3& solved) {
+        glm::vec3 result = light;
+        for (std::size_t c = 0; c < 3; ++c)
+            if (solved[c] > 0)
+                result[c] = float(double(light[c]) * gathered[c] / solved[c]);
+        return result;
+    }
+
+    std::vector<Sum> of_places_, of_looks_, of_lobes_, lobes_of_looks_;
+    std::uint64_t rays_ = 0;
+};
+
+} // namespace
+
+int gather_rays(const PictureOptions& options) {
+    return options.gather_rays >= 0 ? options.gather_rays : std::clamp(options.samples / 8, 1, 4);
+}
+
+void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
+                       const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
+                       SurfaceShading& surfaces, GlossShading& gloss, Progress& progress, WorkReport& report) {
+    const int rays = gather_rays(options);
+    if (rays == 0 || !options.pixel_shadows) {
+        report.skips.push_back({"final gathering",
+                                rays == 0 ? "no rays were asked for" : "shadows are not tested per pixel",
+                                "leaves have their mean light"});
+        return;
+    }
+    const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);
+    GatheredSums sums(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1), gloss.lobe_count());
+    progress.begin("gathering light where the camera looks", std::size_t(options.height));
+    for (int first = 0; first < options.height; first += kRowsAtOnce) {
+        const int count = std::min(kRowsAtOnce, options.height - first);
+        std::vector<std::vector<GatheredSample>> rows(static_cast<std::size_t>(count));
+        parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row) {
+                progress.throw_if_stopped();
+                rows[row] = gathering.row(first + int(row));
+                progress.advance(1);
+            }
+        });
+        for (const std::vector<GatheredSample>& row : rows)
+            for (const GatheredSample& sample : row)
+                sums.add(sample);
+    }
+    sums.correct(surfaces);
+    sums.give_lobes(gloss, float(kMostPixels * rays));
+    report.counts.push_back({"gathering rays", sums.rays()});
+}
+
+} // namespace kokage
