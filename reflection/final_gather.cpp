@@ -50,7 +50,7 @@ class Gathering {
               const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
               const SurfaceShading& surfaces, const GlossShading& gloss)
         : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
-          environment_(environment), surfaces_(surfaces), gloss_(gloss), rays_(gather_rays(options)) {}
+          environment_(environment), surfaces_(surfaces), gloss_(gloss), rays_(options.gather_rays) {}
 
     /// What the camera sees in a row.
     std::vector<GatheredSample> row(int y) const {
@@ -195,18 +195,15 @@ class GatheredSums {
 
 } // namespace
 
-int gather_rays(const PictureOptions& options) {
-    return options.gather_rays >= 0 ? options.gather_rays : std::clamp(options.samples / 8, 1, 4);
-}
-
 void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
                        const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
                        SurfaceShading& surfaces, GlossShading& gloss, Progress& progress, WorkReport& report) {
-    const int rays = gather_rays(options);
-    if (rays == 0 || !options.pixel_shadows) {
-        report.skips.push_back({"final gathering",
-                                rays == 0 ? "no rays were asked for" : "shadows are not tested per pixel",
-                                "leaves have their mean light"});
+    const int rays = options.gather_rays;
+    if (rays == 0)
+        return;
+    if (!options.pixel_shadows) {
+        report.skips.push_back({"final gathering", "shadows are not tested per pixel",
+                                std::to_string(rays) + " rays a pixel; patches keep their mean light"});
         return;
     }
     const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);

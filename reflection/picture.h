@@ -79,9 +79,9 @@ struct PictureOptions {
     int width = 1280, height = 960;
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
     int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
-    /// Rays a pixel that correct the solved light where the camera looks (final_gather.h); render_picture alone. 0: none;
-    /// negative: some, by `samples`.
-    int gather_rays = -1;
+    /// render_picture: rays a pixel that correct the solved light where the camera looks (final_gather.h). 0: the
+    /// picture shows what was solved.
+    int gather_rays = 0;
     std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
     bool pixel_shadows = true; ///< else surfaces show the light that was solved for their patches, gloss in it
     PictureGround ground = PictureGround::automatic;
