@@ -41,7 +41,7 @@ struct GatheredSample {
     glm::vec3 gathered{0.f}, solved{0.f};
     std::uint32_t prior = 0; ///< look and side
     std::optional<std::uint32_t> lobe;
-    LobeLight lobe_light;
+    glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
 };
 
 class Gathering {
@@ -87,8 +87,10 @@ class Gathering {
         const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
         sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
         sample.lobe = gloss_.lobe_of_patch(at);
-        if (sample.lobe)
-            sample.lobe_light = gloss_.light(at, hit.direction, mirrored, index, scratch);
+        if (sample.lobe) {
+            sample.lobe_open = gloss_.open_light(at, hit.direction);
+            sample.lobe_correction = gloss_.correction(at, hit.direction, mirrored, index, scratch);
+        }
         return sample;
     }
 
@@ -132,8 +134,8 @@ class GatheredSums {
         ++rays_;
         if (!sample.lobe)
             return;
-        of_lobes_[*sample.lobe].add(1, sample.lobe_light.correction, sample.lobe_light.open, sample.prior);
-        lobes_of_looks_[sample.prior].add(1, sample.lobe_light.correction, sample.lobe_light.open, sample.prior);
+        of_lobes_[*sample.lobe].add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
+        lobes_of_looks_[sample.prior].add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
         ++rays_;
     }
     std::uint64_t rays() const { return rays_; }
@@ -144,7 +146,8 @@ class GatheredSums {
                 const glm::vec3 light = surfaces.light(std::uint32_t(place));
                 const glm::dvec3 rays_of_prior = kRaysOfPrior * glm::dvec3(sum.solved) / double(sum.weight);
                 surfaces.set_light(std::uint32_t(place),
-                                   corrected(light, glm::dvec3(sum.gathered) + rays_of_prior * ratio(of_looks_[sum.prior]),
+                                   corrected(light,
+                                             glm::dvec3(sum.gathered) + rays_of_prior * ratio(of_looks_[sum.prior]),
                                              glm::dvec3(sum.solved) + rays_of_prior));
             }
     }

@@ -11,10 +11,10 @@
 
 namespace kokage {
 
-/// Corrects the indirect light of `surfaces` where the camera sees it, by PictureOptions::gather_rays, and gives `gloss`
-/// the light in the lobes of flat, evenly rough patches. Reports the rays, or that it was skipped because shadows are
-/// not tested per pixel: then solved light has the lights' own in it. The same bits for any number of threads. Throws
-/// Stopped.
+/// Corrects the indirect light of `surfaces` where the camera sees it, by PictureOptions::gather_rays, and gives
+/// `gloss` the light in the lobes of flat, evenly rough patches. Reports the rays, or that it was skipped because
+/// shadows are not tested per pixel: then solved light has the lights' own in it. The same bits for any number of
+/// threads. Throws Stopped.
 void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
                        const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
                        SurfaceShading& surfaces, GlossShading& gloss, Progress& progress, WorkReport& report);

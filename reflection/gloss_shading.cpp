@@ -7,7 +7,10 @@
 namespace kokage {
 namespace {
 
-constexpr std::uint32_t kLobePattern = 0x9e3779b9u; ///< makes numbers of its own of a pixel's
+/// Make numbers of its own of a pixel's.
+constexpr std::uint32_t kLobePattern = 0x9e3779b9u, kChancePattern = 0x7f4a7c15u;
+constexpr float kRaysByShare = 2; ///< chance of a ray over the gloss's share of what is seen
+constexpr float kLeastChance = 0.125f;
 
 } // namespace
 
@@ -38,30 +41,44 @@ std::optional<std::uint32_t> GlossShading::lobe_of_patch(const SurfacePoint& at)
     return 2 * at.patch + !at.front;
 }
 
-LobeLight GlossShading::light(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
-                              SampleIndex sample, ShadingScratch& scratch) const {
-    const glm::vec3 mirrored = glm::normalize(glm::reflect(direction, at.normal));
-    LobeLight light{remainder_->radiance(at.normal, mirrored, at.roughness)};
-    const LobeSample drawn = sample_gloss(mirrored, at.roughness, numbers);
+glm::vec3 GlossShading::mirrored(const SurfacePoint& at, const glm::vec3& direction) {
+    return glm::normalize(glm::reflect(direction, at.normal));
+}
+
+glm::vec3 GlossShading::open_light(const SurfacePoint& at, const glm::vec3& direction) const {
+    return remainder_->radiance(at.normal, mirrored(at, direction), at.roughness);
+}
+
+glm::vec3 GlossShading::correction(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
+                                   SampleIndex sample, ShadingScratch& scratch) const {
+    const LobeSample drawn = sample_gloss(mirrored(at, direction), at.roughness, numbers);
     if (!(glm::dot(at.normal, drawn.direction) > 0))
-        return light;
+        return glm::vec3(0.f);
     const std::optional<glm::vec3> met = at.relief && at.relief->hides(drawn.direction)
                                              ? surfaces_.solved_radiance(at) // bark opposite
                                              : incoming_.along(at.point, drawn.direction, sample, scratch);
-    light.correction = drawn.weight * (met ? *met - lat_long_radiance(environment_.remainder, drawn.direction)
-                                           : wide_lights_in(environment_, drawn.direction, at.roughness));
-    return light;
+    return drawn.weight * (met ? *met - lat_long_radiance(environment_.remainder, drawn.direction)
+                               : wide_lights_in(environment_, drawn.direction, at.roughness));
 }
 
-glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
-                                 ShadingScratch& scratch) const {
+/// Few rays are enough where the gloss is faint beside what else is seen (Russian roulette, Arvo and Kirk 1990).
+float GlossShading::chance_of_ray(const glm::vec3& open, const glm::vec3& beside) {
+    const float by_gloss = luminance(open), all = by_gloss + luminance(beside);
+    return all > 0 ? std::clamp(kRaysByShare * by_gloss / all, kLeastChance, 1.f) : 1.f;
+}
+
+glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direction, const glm::vec3& beside,
+                                 SampleIndex sample, ShadingScratch& scratch) const {
     if (!remainder_ || !(at.gloss.r > 0 || at.gloss.g > 0 || at.gloss.b > 0))
         return glm::vec3(0.f);
     if (const auto lobe = lobe_of_patch(at); lobe && of_patches_[*lobe].r >= 0)
         return at.gloss * of_patches_[*lobe];
-    const LobeLight lobe_light =
-        light(at, direction, multi_jittered(sample.index, sample.count, sample.pattern ^ kLobePattern), sample, scratch);
-    return at.gloss * (lobe_light.open + lobe_light.correction);
+    const glm::vec3 open = at.gloss * open_light(at, direction);
+    const float chance = chance_of_ray(open, beside);
+    if (chance < 1 && !(stratified(sample.index, sample.count, sample.pattern ^ kChancePattern) < chance))
+        return open;
+    const glm::vec2 numbers = multi_jittered(sample.index, sample.count, sample.pattern ^ kLobePattern);
+    return open + at.gloss * correction(at, direction, numbers, sample, scratch) / chance;
 }
 
 } // namespace kokage

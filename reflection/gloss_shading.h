@@ -9,11 +9,6 @@
 
 namespace kokage {
 
-/// Light through a lobe: of the surroundings as if nothing stood in the way, and what one ray finds to change in it.
-struct LobeLight {
-    glm::vec3 open{0.f}, correction{0.f};
-};
-
 /// The lobe is looked up in a multi-scale map as if nothing stood in the way; one ray drawn from the lobe for every
 /// camera ray corrects it: where it meets the scene, what it meets replaces the surroundings behind it. So the map
 /// carries what varies little, rays only the difference, and without anything in the way there is no noise.
@@ -25,13 +20,16 @@ class GlossShading {
                  const IncomingRadiance& incoming, const std::optional<RoughnessBounds>& lobes, Progress& progress,
                  WorkReport& report);
 
-    /// K times the light through the lobe. A single ray's answer may be negative; their mean is not.
-    glm::vec3 radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+    /// K times the light through the lobe. `beside`: what else of the point is seen. A single ray's answer may be
+    /// negative; their mean is not.
+    glm::vec3 radiance(const SurfacePoint& at, const glm::vec3& direction, const glm::vec3& beside, SampleIndex sample,
                        ShadingScratch& scratch) const;
 
-    /// Through the lobe about the mirrored `direction`, a ray of which is drawn by two uniform numbers.
-    LobeLight light(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers, SampleIndex sample,
-                    ShadingScratch& scratch) const;
+    /// Light through the lobe about the mirrored `direction`, of the surroundings as if nothing stood in the way.
+    glm::vec3 open_light(const SurfacePoint& at, const glm::vec3& direction) const;
+    /// What one ray of the lobe, drawn by two uniform numbers, finds to change in it.
+    glm::vec3 correction(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
+                         SampleIndex sample, ShadingScratch& scratch) const;
 
     /// A flat patch of one roughness sees nearly the same in its lobe all over: which of lobe_count() it has. Empty: it
     /// is not flat, not even or not glossy.
@@ -41,6 +39,9 @@ class GlossShading {
     void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light) { of_patches_[lobe] = light; }
 
   private:
+    static glm::vec3 mirrored(const SurfacePoint& at, const glm::vec3& direction);
+    static float chance_of_ray(const glm::vec3& open, const glm::vec3& beside);
+
     const ShadedScene& scene_;
     const Environment& environment_;
     const SurfaceShading& surfaces_;

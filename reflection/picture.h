@@ -49,8 +49,8 @@ struct ShadedScene {
     std::vector<SurfaceLook> looks;           ///< indexed by triangle_look; empty = every patch has its mean colour
     std::vector<std::uint32_t> triangle_look; ///< per triangle; empty if looks is
     std::vector<glm::vec3> indirect_front, indirect_back; ///< per patch: radiance without the split-off lights
-    /// Per patch: what gloss sends on of the same light, spread as if it were diffuse; for rays that meet the patch after
-    /// the camera's. Empty: nothing is glossy.
+    /// Per patch: what gloss sends on of the same light, spread as if it were diffuse; for rays that meet the patch
+    /// after the camera's. Empty: nothing is glossy.
     std::vector<glm::vec3> gloss_front, gloss_back;
     std::vector<glm::vec3> radiance_front,
         radiance_back;                ///< per patch: all light, with what gloss mirrors as if it scattered it

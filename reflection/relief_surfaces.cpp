@@ -135,9 +135,11 @@ void ReliefSurfaces::first_hits(std::span<CameraHit> hits) const {
     std::vector<std::size_t> entering;
     std::vector<SurfaceRay> rays;
     std::vector<Entry> entries;
+    first_hits_of_meshes(hits);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         CameraHit& hit = hits[i];
-        hit.is_relief = false;
+        if (!hit.found || hit.hit.ground || relief_->prism[hit.hit.triangle] == SceneRelief::kNone)
+            continue;
         hit.found = false;
         if (Entry entry; next_entry(hit, entry, 0, kInfinity)) {
             entering.push_back(i);

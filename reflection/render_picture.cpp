@@ -36,7 +36,7 @@ struct Renderer {
         if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
             const SurfacePoint at = surfaces.point(origin, hit);
             SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
-            light.reflection += gloss.radiance(at, direction, sample, scratch);
+            light.reflection += gloss.radiance(at, direction, light.total(), sample, scratch);
             return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(), light);
         }
         if (!(ground_distance < kInfinity))

@@ -95,8 +95,7 @@ void SurfaceShading::place_light() {
     const std::vector<glm::vec3>*fronts = pixel_shadows_ ? &scene_.indirect_front : &scene_.radiance_front,
           *backs = pixel_shadows_ ? &scene_.indirect_back : &scene_.radiance_back;
     for (const auto& [side, of_patches] : {std::pair(std::size_t(0), fronts), {std::size_t(1), backs}}) {
-        std::copy(of_patches->begin(), of_patches->end(),
-                  light_.begin() + std::ptrdiff_t(side * (count + corners)));
+        std::copy(of_patches->begin(), of_patches->end(), light_.begin() + std::ptrdiff_t(side * (count + corners)));
         if (any_smooth)
             smooth_light(side, *of_patches);
     }
@@ -134,9 +133,9 @@ LightPlaces SurfaceShading::places(const SurfacePoint& at) const {
     if (!at.smooth)
         return {{first + at.patch, first + at.patch, first + at.patch}, {1, 0, 0}};
     const glm::uvec3 corners = scene_.patches->triangles[at.triangle];
-    return {{first + count + corner_[corners.x], first + count + corner_[corners.y],
-             first + count + corner_[corners.z]},
-            at.weights};
+    return {
+        {first + count + corner_[corners.x], first + count + corner_[corners.y], first + count + corner_[corners.z]},
+        at.weights};
 }
 
 glm::vec3 SurfaceShading::solved(const SurfacePoint& at) const {
@@ -159,9 +158,12 @@ glm::vec3 SurfaceShading::met_radiance(const SurfacePoint& at, const glm::vec3& 
     if (!scene_.gloss_front.empty())
         light += at.front ? scene_.gloss_front[at.patch] : scene_.gloss_back[at.patch];
     // A narrower lobe would show a light to one ray in a thousand.
-    const Scattering scattering{
-        at.normal, at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
-        std::max(at.roughness, kLeastMetRoughness)};
+    const Scattering scattering{at.normal,
+                                at.optics.reflectance,
+                                at.optics.transmittance,
+                                at.gloss,
+                                glm::reflect(direction, at.normal),
+                                std::max(at.roughness, kLeastMetRoughness)};
     const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
     return at.texture * light + lights.scattered + lights.reflected;
 }

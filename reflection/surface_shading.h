@@ -60,8 +60,8 @@ class SurfaceShading {
     bool has_pixel_shadows() const { return pixel_shadows_; }
     /// The solution's, of all light: no ray is traced.
     glm::vec3 solved_radiance(const SurfacePoint& at) const;
-    /// For rays that left a point of the scene: solved indirect light, and lights tested at this very point, because what
-    /// stands near enough to be met often stands in its light.
+    /// For rays that left a point of the scene: solved indirect light, and lights tested at this very point, because
+    /// what stands near enough to be met often stands in its light.
     glm::vec3 met_radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
                            ShadingScratch& scratch) const;
     /// Radiance of the mesh, untextured: of indirect light, or of all light without shadows per pixel.
