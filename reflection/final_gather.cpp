@@ -15,8 +15,10 @@ constexpr int kRowsAtOnce = 32;
 /// How many rays the mean correction of a look counts as, beside a patch's own: a ray's light varies about four times
 /// as much (in standard deviation) as patches' corrections do; of lobes, hardly more than they do.
 constexpr double kRaysOfPrior = 16, kLobesOfPrior = 2;
-/// Of a patch whose reflections are one: in larger ones the eye would miss their changing.
-constexpr int kMostPixels = 1000;
+/// Rays of a patch (or corner) after which more are not worth their time. A patch that has so many pixels is large: the
+/// eye would miss how its reflections change, so they are traced pixel by pixel.
+constexpr float kEnough = 400;
+constexpr std::uint64_t kGatherNumbers = 0x67617468;
 
 /// Interleaves the bits, so that numbers in a row fill squares of the picture.
 std::uint32_t curve_index(std::uint32_t x, std::uint32_t y) {
@@ -44,87 +46,11 @@ struct GatheredSample {
     glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
 };
 
-class Gathering {
-  public:
-    Gathering(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
-              const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
-              const SurfaceShading& surfaces, const GlossShading& gloss)
-        : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
-          environment_(environment), surfaces_(surfaces), gloss_(gloss), rays_(options.gather_rays) {}
-
-    /// What the camera sees in a row.
-    std::vector<GatheredSample> row(int y) const {
-        std::vector<PathNumbers> numbers;
-        std::vector<CameraHit> hits;
-        const std::uint64_t seed = hash64(options_.seed ^ 0x67617468657273ull);
-        for (int x = 0; x < options_.width; ++x)
-            for (int k = 0; k < rays_; ++k) {
-                numbers.emplace_back(seed, curve_index(std::uint32_t(x), std::uint32_t(y)) * std::uint32_t(rays_) +
-                                               std::uint32_t(k));
-                const glm::vec2 place = numbers.back().pair();
-                hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
-            }
-        relief_.first_hits(hits);
-        std::vector<GatheredSample> samples;
-        ShadingScratch scratch;
-        for (std::size_t k = 0; k < hits.size(); ++k)
-            if (hits[k].found && !hits[k].hit.ground)
-                samples.push_back(from(hits[k], numbers[k], scratch));
-        return samples;
-    }
-
-  private:
-    GatheredSample from(const CameraHit& hit, PathNumbers& numbers, ShadingScratch& scratch) const {
-        const SurfacePoint at = surfaces_.point(frame_.position, hit);
-        const PatchScene& patches = *scene_.patches;
-        const Optics& optics = patches.optics[patches.patches[at.patch].optics];
-        GatheredSample sample;
-        sample.places = surfaces_.places(at);
-        sample.solved = surfaces_.solved(at);
-        sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
-        const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
-        const float choice = numbers.single();
-        const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
-        sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
-        sample.lobe = gloss_.lobe_of_patch(at);
-        if (sample.lobe) {
-            sample.lobe_open = gloss_.open_light(at, hit.direction);
-            sample.lobe_correction = gloss_.correction(at, hit.direction, mirrored, index, scratch);
-        }
-        return sample;
-    }
-
-    /// One ray of the cosine lobe before or behind the surface.
-    glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, float choice, const glm::vec2& place,
-                              SampleIndex index, ShadingScratch& scratch) const {
-        const float reflected = luminance(optics.reflectance), transmitted = luminance(optics.transmittance);
-        if (!(reflected + transmitted > 0))
-            return glm::vec3(0.f);
-        const float share = reflected / (reflected + transmitted);
-        const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
-        const bool before = choice < share;
-        const glm::vec3 direction = about(cosine_direction(place), before ? normal : -normal);
-        const glm::vec3 seen = incoming_.along(at.point, direction, index, scratch)
-                                   .value_or(lat_long_radiance(environment_.remainder, direction));
-        return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
-    }
-
-    const ShadedScene& scene_;
-    const ReliefSurfaces& relief_;
-    const CameraFrame& frame_;
-    const PictureOptions& options_;
-    const IncomingRadiance& incoming_;
-    const Environment& environment_;
-    const SurfaceShading& surfaces_;
-    const GlossShading& gloss_;
-    const int rays_;
-};
-
 /// Sums over what the camera sees of each place of light, each look and each patch's lobe.
 class GatheredSums {
   public:
     GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes)
-        : of_places_(places), of_looks_(2 * looks), of_lobes_(lobes), lobes_of_looks_(2 * looks) {}
+        : of_places_(places), of_lobes_(lobes), of_looks_(2 * looks), lobes_of_looks_(2 * looks) {}
 
     void add(const GatheredSample& sample) {
         for (std::size_t k = 0; k < 3; ++k)
@@ -139,25 +65,32 @@ class GatheredSums {
         ++rays_;
     }
     std::uint64_t rays() const { return rays_; }
+    bool enough(const LightPlaces& places) const {
+        for (std::size_t k = 0; k < 3; ++k)
+            if (places.weights[k] > 0 && of_places_[places.places[k]].weight < kEnough)
+                return false;
+        return true;
+    }
 
     void correct(SurfaceShading& surfaces) const {
         for (std::size_t place = 0; place < of_places_.size(); ++place)
-            if (const Sum& sum = of_places_[place]; sum.weight > 0) {
-                const glm::vec3 light = surfaces.light(std::uint32_t(place));
-                const glm::dvec3 rays_of_prior = kRaysOfPrior * glm::dvec3(sum.solved) / double(sum.weight);
+            if (const Sum& sum = of_places_[place]; sum.weight > 0)
                 surfaces.set_light(std::uint32_t(place),
-                                   corrected(light,
-                                             glm::dvec3(sum.gathered) + rays_of_prior * ratio(of_looks_[sum.prior]),
-                                             glm::dvec3(sum.solved) + rays_of_prior));
-            }
+                                   corrected(surfaces.light(std::uint32_t(place)), sum, ratio(of_looks_[sum.prior])));
     }
 
-    /// Patches that cover more pixels than `most_rays` have their lobes traced pixel by pixel.
-    void give_lobes(GlossShading& gloss, float most_rays) const {
+    /// To be called after one ray a pixel.
+    void tell_large_patches() {
+        for (Sum& sum : of_lobes_)
+            sum.is_large = sum.weight >= kEnough;
+    }
+
+    /// All but those of large patches.
+    void give_lobes(GlossShading& gloss) const {
         for (std::size_t lobe = 0; lobe < of_lobes_.size(); ++lobe)
-            if (const Sum& sum = of_lobes_[lobe]; sum.weight > 0 && sum.weight <= most_rays) {
-                const Sum& all = lobes_of_looks_[sum.prior];
-                const glm::dvec3 prior = kLobesOfPrior * glm::dvec3(all.gathered) / double(all.weight),
+            if (const Sum& sum = of_lobes_[lobe]; sum.weight > 0 && !sum.is_large) {
+                const LookSum& all = lobes_of_looks_[sum.prior];
+                const glm::dvec3 prior = kLobesOfPrior * all.gathered / all.weight,
                                  correction = (glm::dvec3(sum.gathered) + prior) / (double(sum.weight) + kLobesOfPrior);
                 gloss.set_light_of_patch(std::uint32_t(lobe),
                                          glm::max(sum.solved / sum.weight + glm::vec3(correction), glm::vec3(0.f)));
@@ -165,35 +98,123 @@ class GatheredSums {
     }
 
   private:
-    struct Sum {
-        glm::vec3 gathered{0.f}, solved{0.f};
-        float weight = 0;
+    /// Of places and lobes, of which there are many, in single precision.
+    template <typename Vector>
+    struct SumOf {
+        Vector gathered{0}, solved{0};
+        typename Vector::value_type weight = 0;
         std::uint32_t prior = 0;
+        bool is_large = false;
         void add(float w, const glm::vec3& of_ray, const glm::vec3& of_solution, std::uint32_t of_prior) {
-            gathered += w * of_ray;
-            solved += w * of_solution;
+            gathered += Vector(w * of_ray);
+            solved += Vector(w * of_solution);
             weight += w;
             prior = of_prior;
         }
     };
-    static glm::dvec3 ratio(const Sum& sum) {
+    using Sum = SumOf<glm::vec3>;
+    using LookSum = SumOf<glm::dvec3>;
+
+    static glm::dvec3 ratio(const LookSum& sum) {
         glm::dvec3 result(1.);
         for (std::size_t c = 0; c < 3; ++c)
             if (sum.solved[c] > 0)
-                result[c] = double(sum.gathered[c]) / double(sum.solved[c]);
+                result[c] = sum.gathered[c] / sum.solved[c];
         return result;
     }
-    /// What was solved as black has nothing to scale: it takes what was gathered.
-    static glm::vec3 corrected(const glm::vec3& light, const glm::dvec3& gathered, const glm::dvec3& solved) {
-        glm::vec3 result = light;
-        for (std::size_t c = 0; c < 3; ++c)
-            if (solved[c] > 0)
-                result[c] = float(double(light[c]) * gathered[c] / solved[c]);
+    /// What was solved as black has nothing to scale: it becomes what was gathered.
+    static glm::vec3 corrected(const glm::vec3& light, const Sum& sum, const glm::dvec3& ratio_of_look) {
+        glm::vec3 result(0.f);
+        const double rays = double(sum.weight) + kRaysOfPrior;
+        for (std::size_t c = 0; c < 3; ++c) {
+            const double mean = double(sum.solved[c]) / double(sum.weight);
+            const double gathered = double(sum.gathered[c]) + kRaysOfPrior * mean * ratio_of_look[c];
+            result[c] = float(mean > 0 ? double(light[c]) * gathered / (mean * rays) : gathered / rays);
+        }
         return result;
     }
 
-    std::vector<Sum> of_places_, of_looks_, of_lobes_, lobes_of_looks_;
+    std::vector<Sum> of_places_, of_lobes_;
+    std::vector<LookSum> of_looks_, lobes_of_looks_;
     std::uint64_t rays_ = 0;
+};
+
+class Gathering {
+  public:
+    Gathering(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
+              const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
+              const SurfaceShading& surfaces, const GlossShading& gloss)
+        : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
+          environment_(environment), surfaces_(surfaces), gloss_(gloss) {}
+
+    /// By one ray a pixel of a row: of what the camera sees and `sums` knows too little of.
+    std::vector<GatheredSample> row(int pass, int y, const GatheredSums& sums) const {
+        std::vector<PathNumbers> numbers;
+        std::vector<CameraHit> hits;
+        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers + std::uint64_t(pass)));
+        for (int x = 0; x < options_.width; ++x) {
+            numbers.emplace_back(seed, curve_index(std::uint32_t(x), std::uint32_t(y)));
+            const glm::vec2 place = numbers.back().pair();
+            hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
+        }
+        relief_.first_hits(hits);
+        std::vector<GatheredSample> samples;
+        ShadingScratch scratch;
+        for (std::size_t k = 0; k < hits.size(); ++k) {
+            if (!hits[k].found || hits[k].hit.ground)
+                continue;
+            const SurfacePoint at = surfaces_.point(frame_.position, hits[k]);
+            if (const LightPlaces places = surfaces_.places(at); !sums.enough(places))
+                samples.push_back(from(at, places, hits[k], numbers[k], scratch));
+        }
+        return samples;
+    }
+
+  private:
+    GatheredSample from(const SurfacePoint& at, const LightPlaces& places, const CameraHit& hit, PathNumbers& numbers,
+                        ShadingScratch& scratch) const {
+        const PatchScene& patches = *scene_.patches;
+        const Optics& optics = patches.optics[patches.patches[at.patch].optics];
+        GatheredSample sample;
+        sample.places = places;
+        sample.solved = glm::vec3(displayable(surfaces_.solved(at)));
+        sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
+        const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
+        const float choice = numbers.single();
+        const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
+        sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
+        sample.lobe = gloss_.lobe_of_patch(at);
+        if (sample.lobe) {
+            sample.lobe_open = glm::vec3(displayable(gloss_.open_light(at, hit.direction)));
+            sample.lobe_correction =
+                glm::vec3(displayable(gloss_.correction(at, hit.direction, mirrored, index, scratch)));
+        }
+        return sample;
+    }
+
+    /// One ray of the cosine lobe before or behind the surface.
+    glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, float choice, const glm::vec2& place,
+                              SampleIndex index, ShadingScratch& scratch) const {
+        const float reflected = luminance(optics.reflectance), transmitted = luminance(optics.transmittance);
+        if (!(reflected + transmitted > 0))
+            return glm::vec3(0.f);
+        const float share = reflected / (reflected + transmitted);
+        const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
+        const bool before = choice < share;
+        const glm::vec3 direction = about(cosine_direction(place), before ? normal : -normal);
+        const glm::vec3 seen(displayable(incoming_.along(at.point, direction, index, scratch)
+                                             .value_or(lat_long_radiance(environment_.remainder, direction))));
+        return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
+    }
+
+    const ShadedScene& scene_;
+    const ReliefSurfaces& relief_;
+    const CameraFrame& frame_;
+    const PictureOptions& options_;
+    const IncomingRadiance& incoming_;
+    const Environment& environment_;
+    const SurfaceShading& surfaces_;
+    const GlossShading& gloss_;
 };
 
 } // namespace
@@ -211,23 +232,26 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     }
     const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);
     GatheredSums sums(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1), gloss.lobe_count());
-    progress.begin("gathering light where the camera looks", std::size_t(options.height));
-    for (int first = 0; first < options.height; first += kRowsAtOnce) {
-        const int count = std::min(kRowsAtOnce, options.height - first);
-        std::vector<std::vector<GatheredSample>> rows(static_cast<std::size_t>(count));
-        parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-            for (std::size_t row = begin; row < end; ++row) {
+    progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
+    for (int pass = 0; pass < rays; ++pass) {
+        for (int first = 0; first < options.height; first += kRowsAtOnce) {
+            std::vector<std::vector<GatheredSample>> rows(
+                static_cast<std::size_t>(std::min(kRowsAtOnce, options.height - first)));
+            parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
                 progress.throw_if_stopped();
-                rows[row] = gathering.row(first + int(row));
-                progress.advance(1);
-            }
-        });
-        for (const std::vector<GatheredSample>& row : rows)
-            for (const GatheredSample& sample : row)
-                sums.add(sample);
+                for (std::size_t row = begin; row < end; ++row)
+                    rows[row] = gathering.row(pass, first + int(row), sums);
+                progress.advance(end - begin);
+            });
+            for (const std::vector<GatheredSample>& row : rows)
+                for (const GatheredSample& sample : row)
+                    sums.add(sample);
+        }
+        if (pass == 0)
+            sums.tell_large_patches();
     }
     sums.correct(surfaces);
-    sums.give_lobes(gloss, float(kMostPixels * rays));
+    sums.give_lobes(gloss);
     report.counts.push_back({"gathering rays", sums.rays()});
 }
 
