@@ -3,17 +3,25 @@
 namespace kokage {
 
 RenderPlan render_plan(bool quick) {
-    const double error = RenderOptions().error; // what users get
+    const double usual = RenderOptions().error, fine = 0.05; // usual: what users get
+    RenderPlan plan{.width = 480,
+                    .height = 360,
+                    .every_row = 8,
+                    .every_column = 7,
+                    .truth_samples = 8192,
+                    .fast = {{usual, 4}, {usual, 16}, {usual, 32}, {usual, 64}, {fine, 16}},
+                    .traced = {16, 64, 256, 1024},
+                    .map_samples = 256};
     if (quick)
-        return {480, 360, 8, 7, 8192, {{error, 4}, {error, 16}, {error, 32}, {error, 64}}, {16, 64, 256, 1024}, 256};
-    return {640,
-            480,
-            10,
-            10,
-            32768,
-            {{error, 4}, {error, 16}, {error, 32}, {error, 64}, {0.05, 64}},
-            {16, 64, 256, 1024, 4096},
-            1024};
+        return plan;
+    plan.width = 640;
+    plan.height = 480;
+    plan.every_row = plan.every_column = 10;
+    plan.truth_samples = 32768;
+    plan.fast.push_back({fine, 64});
+    plan.traced.push_back(4096);
+    plan.map_samples = 1024;
+    return plan;
 }
 
 PictureOptions judged_pixels(const RenderPlan& plan, const PictureOptions& picture) {

@@ -1,4 +1,6 @@
 #include "common/obj/obj_scene.h"
+#include "common/services/error.h"
+#include "tests/benchmark/render_benchmark.h"
 #include "tests/benchmark/render_judge.h"
 #include "tests/benchmark/render_scenes.h"
 #include "tests/benchmark/render_skips.h"
@@ -11,6 +13,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 namespace kokage {
 namespace {
@@ -161,6 +164,15 @@ TEST(RenderSkips, OnAndOffStandBesideOneAnother) {
     EXPECT_NE(skip_table({on, off}).find("| relief | close | 1.00 | 2.00 | 0.100 | relief: too thin |"),
               std::string::npos)
         << skip_table({on, off});
+}
+
+TEST(RenderBenchmark, RefusesExperimentsThatThereAreNot) {
+    const TemporaryFolder folder;
+    std::ostringstream out;
+    EXPECT_THROW(run_render_benchmark({.output_folder = folder.path(), .experiments = {"skips", "films"}},
+                                      silent_progress(), out),
+                 InputError);
+    EXPECT_EQ(out.str(), ""); // before any work
 }
 
 TEST(RenderTruth, AHashChangesWithWhatThePictureDependsOn) {

@@ -104,6 +104,20 @@ TEST(ReliefPicture, ReliefBelowAQuarterPixelIsNotMadeAndChangesNoBit) {
     EXPECT_NE(skipped(without)->why.find("no material"), std::string::npos);
 }
 
+TEST(ReliefPicture, ThinReliefIsTracedInFullIfAsked) {
+    const Environment environment = sky_over_dim_ground(3);
+    const BarkTube tube(fine_trunk(), environment, 0.02f);
+    const Camera far = camera_at({30, 0.6f, 90}, {0, 0.5f, 0}, 0.02f); // 0.21 pixels
+    PictureOptions options = without_ground(20, 16);
+    const Picture without = fast(tube, environment, far, options);
+    options.skips.thin_relief = false;
+    const Picture with = fast(tube, environment, far, options);
+    EXPECT_NE(with.radiance.pixels, without.radiance.pixels);
+    EXPECT_LT(difference(without.radiance, with.radiance), 0.1); // what is so fine is seen as its mean
+    EXPECT_TRUE(std::none_of(with.report.skips.begin(), with.report.skips.end(),
+                             [](const WorkReport::Skip& skip) { return skip.what.rfind("relief", 0) == 0; }));
+}
+
 TEST(ReliefPicture, ReliefOutOfViewIsNotMade) {
     const Environment environment = sky_over_dim_ground(3);
     const BarkTube tube(fine_trunk(), environment, 0.02f);
