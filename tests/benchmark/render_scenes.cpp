@@ -97,7 +97,7 @@ std::vector<SceneDescription> render_scenes(int width, int height, const std::fi
         five.trees.push_back(tree(species, 8000, at, 40. * double(seed), seed + 1));
         ++seed;
     }
-    look(five, {0.4, 2.5, 14.8}, {0.3, 2.15, 0}); // all five are in the picture
+    look(five, {0.5, 2.5, 15.2}, {0.42, 2.15, 0}); // all five are in the picture
     return {close, pot, five};
 }
 
