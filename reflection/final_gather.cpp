@@ -44,6 +44,8 @@ struct GatheredSample {
     std::uint32_t prior = 0; ///< look and side
     std::optional<std::uint32_t> lobe;
     glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
+    glm::vec3 point{0.f}, origin{0.f}; ///< where the ray began, and one corner of its patch
+    bool is_flat = true;
 };
 
 /// Sums over what the camera sees of each place of light, each look and each patch's lobe.
@@ -56,11 +58,16 @@ class GatheredSums {
         for (std::size_t k = 0; k < 3; ++k)
             if (const float weight = sample.places.weights[k]; weight > 0)
                 of_places_[sample.places.places[k]].add(weight, sample.gathered, sample.solved, sample.prior);
+        if (sample.is_flat)
+            moments(moments_of_places_, of_places_.size(), sample.places.places[0], sample.origin)
+                .add(sample.point, luminance(sample.gathered));
         of_looks_[sample.prior].add(1, sample.gathered, sample.solved, sample.prior);
         ++rays_;
         if (!sample.lobe)
             return;
         of_lobes_[*sample.lobe].add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
+        moments(moments_of_lobes_, of_lobes_.size(), *sample.lobe, sample.origin)
+            .add(sample.point, luminance(sample.lobe_open + sample.lobe_correction));
         lobes_of_looks_[sample.prior].add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
         ++rays_;
     }
@@ -79,6 +86,12 @@ class GatheredSums {
                                    corrected(surfaces.light(std::uint32_t(place)), sum, ratio(of_looks_[sum.prior])));
     }
 
+    void give_gradients(SurfaceShading& surfaces) const {
+        for (std::size_t place = 0; place < moments_of_places_.number.size(); ++place)
+            if (const std::uint32_t number = moments_of_places_.number[place])
+                surfaces.set_gradient(std::uint32_t(place), moments_of_places_.moments[number - 1].gradient());
+    }
+
     /// To be called after one ray a pixel.
     void tell_large_patches() {
         for (Sum& sum : of_lobes_)
@@ -93,7 +106,8 @@ class GatheredSums {
                 const glm::dvec3 prior = kLobesOfPrior * all.gathered / all.weight,
                                  correction = (glm::dvec3(sum.gathered) + prior) / (double(sum.weight) + kLobesOfPrior);
                 gloss.set_light_of_patch(std::uint32_t(lobe),
-                                         glm::max(sum.solved / sum.weight + glm::vec3(correction), glm::vec3(0.f)));
+                                         glm::max(sum.solved / sum.weight + glm::vec3(correction), glm::vec3(0.f)),
+                                         moments_of_lobes_.moments[moments_of_lobes_.number[lobe] - 1].gradient());
             }
     }
 
@@ -134,6 +148,22 @@ class GatheredSums {
         return result;
     }
 
+    /// Of the places that are seen.
+    struct Moments {
+        std::vector<std::uint32_t> number; ///< from 1; 0: not seen
+        std::vector<PatchMoments> moments;
+    };
+    static PatchMoments& moments(Moments& all, std::size_t places, std::uint32_t place, const glm::vec3& origin) {
+        if (all.number.empty())
+            all.number.assign(places, 0);
+        if (all.number[place] == 0) {
+            all.moments.emplace_back(origin);
+            all.number[place] = std::uint32_t(all.moments.size());
+        }
+        return all.moments[all.number[place] - 1];
+    }
+
+    Moments moments_of_places_, moments_of_lobes_;
     std::vector<Sum> of_places_, of_lobes_;
     std::vector<LookSum> of_looks_, lobes_of_looks_;
     std::uint64_t rays_ = 0;
@@ -177,6 +207,9 @@ class Gathering {
         const Optics& optics = patches.optics[patches.patches[at.patch].optics];
         GatheredSample sample;
         sample.places = places;
+        sample.point = at.point;
+        sample.origin = patches.positions[patches.triangles[patches.patches[at.patch].first_triangle].x];
+        sample.is_flat = !at.smooth;
         sample.solved = glm::vec3(displayable(surfaces_.solved(at)));
         sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
         const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
@@ -251,6 +284,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
             sums.tell_large_patches();
     }
     sums.correct(surfaces);
+    sums.give_gradients(surfaces);
     sums.give_lobes(gloss);
     report.counts.push_back({"gathering rays", sums.rays()});
 }

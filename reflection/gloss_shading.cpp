@@ -72,7 +72,7 @@ glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direct
     if (!remainder_ || !(at.gloss.r > 0 || at.gloss.g > 0 || at.gloss.b > 0))
         return glm::vec3(0.f);
     if (const auto lobe = lobe_of_patch(at); lobe && of_patches_[*lobe].r >= 0)
-        return at.gloss * of_patches_[*lobe];
+        return at.gloss * of_patches_[*lobe] * gradients_.at(*lobe, at.point);
     const glm::vec3 open = at.gloss * open_light(at, direction);
     const float chance = chance_of_ray(open, beside);
     if (chance < 1 && !(stratified(sample.index, sample.count, sample.pattern ^ kChancePattern) < chance))

@@ -36,7 +36,10 @@ class GlossShading {
     std::optional<std::uint32_t> lobe_of_patch(const SurfacePoint& at) const;
     std::size_t lobe_count() const { return of_patches_.size(); }
     /// Is taken from now on for all points of this side of the patch.
-    void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light) { of_patches_[lobe] = light; }
+    void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light, const PatchGradient& gradient) {
+        of_patches_[lobe] = light;
+        gradients_.set(of_patches_.size(), lobe, gradient);
+    }
 
   private:
     static glm::vec3 mirrored(const SurfacePoint& at, const glm::vec3& direction);
@@ -48,7 +51,8 @@ class GlossShading {
     const IncomingRadiance& incoming_;
     std::optional<GlossyRemainder> remainder_; ///< empty: no gloss is drawn by itself
     std::vector<bool> even_;                   ///< looks whose patches may share one lobe's light
-    std::vector<glm::vec3> of_patches_;        ///< front and back of each patch; negative: not known
+    PatchGradients gradients_;
+    std::vector<glm::vec3> of_patches_; ///< front and back of each patch; negative: not known
 };
 
 } // namespace kokage

@@ -141,7 +141,7 @@ LightPlaces SurfaceShading::places(const SurfacePoint& at) const {
 glm::vec3 SurfaceShading::solved(const SurfacePoint& at) const {
     const LightPlaces from = places(at);
     if (!at.smooth)
-        return light_[from.places[0]];
+        return light_[from.places[0]] * gradients_.at(from.places[0], at.point);
     return from.weights.x * light_[from.places[0]] + from.weights.y * light_[from.places[1]] +
            from.weights.z * light_[from.places[2]];
 }

@@ -3,6 +3,7 @@
 // very point.
 #include "common/trace/ray_queries.h"
 #include "reflection/light_choice.h"
+#include "reflection/patch_gradients.h"
 #include "reflection/picture.h"
 #include "reflection/surface_points.h"
 
@@ -72,6 +73,10 @@ class SurfaceShading {
     std::size_t light_count() const { return light_.size(); }
     const glm::vec3& light(std::uint32_t place) const { return light_[place]; }
     void set_light(std::uint32_t place, const glm::vec3& light) { light_[place] = light; }
+    /// Of a patch's place.
+    void set_gradient(std::uint32_t place, const PatchGradient& gradient) {
+        gradients_.set(light_.size(), place, gradient);
+    }
 
   private:
     glm::vec3 indirect_on_relief(const SurfacePoint& at) const;
@@ -86,6 +91,7 @@ class SurfaceShading {
     /// `solved` of all fronts, then of all backs; of either: of the patches, then at the corners of smooth surfaces,
     /// which have the area mean of the patches that meet there.
     std::vector<glm::vec3> light_;
+    PatchGradients gradients_;
     std::vector<std::uint32_t> corner_; ///< per position, counted from the first: the same for all at one place
 };
 

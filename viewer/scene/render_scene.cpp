@@ -47,7 +47,7 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
         take_gloss_out(with_gloss, shaded);
         const RayQueries queries(scene.patches);
         PictureOptions picture = options.picture;
-        picture.gather_rays = options.gather_rays.value_or(std::clamp(picture.samples / 4, 1, 8));
+        picture.gather_rays = options.gather_rays.value_or(std::clamp(picture.samples / 4, 1, 16));
         return render_picture(shaded, queries, scene.environment, scene.camera, picture, progress);
     });
 }

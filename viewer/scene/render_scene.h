@@ -16,7 +16,7 @@ struct RenderOptions {
     /// are not made.
     bool merge_weak_lights = true, skip_light_maps = true;
     /// Rays a pixel that correct the solved light where the camera looks (PictureOptions::gather_rays, which is not
-    /// read). Empty: a quarter of the picture's samples, 1 to 8. With them a coarse solution does as well as a fine
+    /// read). Empty: a quarter of the picture's samples, 1 to 16. With them a coarse solution does as well as a fine
     /// one.
     std::optional<int> gather_rays;
 };
