@@ -9,8 +9,8 @@ namespace {
 
 /// Make numbers of its own of a pixel's.
 constexpr std::uint32_t kLobePattern = 0x9e3779b9u, kChancePattern = 0x7f4a7c15u;
-constexpr float kRaysByShare = 2; ///< chance of a ray over the gloss's share of what is seen
-constexpr float kLeastChance = 0.125f;
+constexpr float kRaysByShare = 4; ///< chance of a ray over the gloss's share of what is seen
+constexpr float kLeastChance = 0.25f;
 
 } // namespace
 
