@@ -40,6 +40,13 @@ void add_render_method_options(CLI::App& app, RenderCommandOptions& o) {
                      "fast: mean relative error of the leaves' light to aim at (otherwise 0.15 for 15 %; pixels err "
                      "less, as they add up many leaves)")
         ->group("Method");
+    app.add_option(
+           "--gather-rays", o.gather_rays,
+           "fast: rays a pixel that gather light anew where the camera looks (otherwise a quarter of --samples, "
+           "1 to 16; 0: leaves show their mean light)")
+        ->check(CLI::Range(0, 1024).description(""))
+        ->type_name("N")
+        ->group("Method");
     app.add_option("--seed", o.seed, "Seed of random numbers (another tree: --set seed=N)")
         ->check(whole_number())
         ->type_name("N")
@@ -179,8 +186,11 @@ CompleteRender complete_render_options(const CLI::App& app, RenderCommandOptions
     complete.options.method = method_of(o.method);
     if (o.error && complete.options.method == RenderMethod::path_traced)
         throw InputError("--error: path-traced has none but its noise, which falls with --samples; leave it out");
+    if (o.gather_rays && complete.options.method == RenderMethod::path_traced)
+        throw InputError("--gather-rays: path-traced follows every path to its end; leave it out");
     check_error(o.error);
     complete.options.error = o.error.value_or(complete.options.error);
+    complete.options.gather_rays = o.gather_rays;
     complete.scene = described_scene(app, o);
     complete_outputs(o, complete.scene);
     complete.options.picture = picture_options(o, complete.scene);

@@ -14,6 +14,7 @@ struct RenderCommandOptions {
     Surroundings surroundings;
     std::string method = "fast";
     std::optional<double> error;
+    std::optional<int> gather_rays;
     std::vector<std::filesystem::path> outputs; ///< .png, .exr
     std::filesystem::path report;
     std::string size; ///< empty: as the scene says

@@ -206,6 +206,22 @@ TEST(Render, PrintsSchemaAndAnExampleThatReads) {
     EXPECT_EQ(run_kokage({"render", "--example", "--schema"}, folder.path()).status, 2);
 }
 
+TEST(Render, GathersAsManyRaysAsAskedFor) {
+    const TemporaryFolder folder;
+    small_scene(folder);
+    const auto rays = [&](const Words& words) {
+        const ProgramRun run =
+            run_kokage(joined({"render", "garden.json", "--samples", "8", "--report", "r.json", "-o", "p.png"}, words),
+                       folder.path());
+        EXPECT_EQ(run.status, 0) << run.errors;
+        return nlohmann::json::parse(read_text(folder / "r.json"))["counts"].value("gathering rays", 0);
+    };
+    EXPECT_EQ(rays({"--gather-rays", "0"}), 0);
+    const int one = rays({"--gather-rays", "1"});
+    EXPECT_GT(one, 0);
+    EXPECT_GT(rays({}), one); // a quarter of the samples: 2
+}
+
 TEST(Render, LeavesFormerPicturesWholeWhenStopped) {
     TemporaryFolder folder;
     write(folder / "oak.png", "former");
@@ -244,6 +260,8 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
         {{"garden.json", "--method", "bundles"}, "--method: 'bundles' is not known; give fast or path-traced"},
         {{"garden.json", "--method", "path-traced", "--error", "0.1"}, "--error: path-traced has none but its noise"},
         {{"garden.json", "--error", "0"}, "--error: it must be above 0"},
+        {{"garden.json", "--gather-rays", "-1"}, "--gather-rays"},
+        {{"garden.json", "--method", "path-traced", "--gather-rays", "2"}, "--gather-rays: path-traced follows every"},
         {{"oak", "--leaves", "200", "--scale", "2"}, "--foliage, --leaf-size, --scale and --up are for files"},
         {{"garden.json", "--data", "nowhere"}, "there is no folder 'nowhere'"},
         {{"garden.json", "--size", "32768x32768", "-o", "a.exr"}, "pixels"},
