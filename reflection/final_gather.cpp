@@ -37,6 +37,16 @@ glm::vec3 about(const glm::vec3& local, const glm::vec3& axis) {
     return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
 }
 
+/// A millionfold sum of such numbers is finite. What is not a number has no part in it.
+glm::vec3 summable(const glm::vec3& light) {
+    constexpr float kLargest = 1e28f;
+    glm::vec3 result(0.f);
+    for (std::size_t c = 0; c < 3; ++c)
+        if (!std::isnan(light[c]))
+            result[c] = std::clamp(light[c], -kLargest, kLargest);
+    return result;
+}
+
 /// What one ray from a seen point says of its patch.
 struct GatheredSample {
     LightPlaces places;
@@ -52,7 +62,8 @@ struct GatheredSample {
 class GatheredSums {
   public:
     GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes)
-        : of_places_(places), of_lobes_(lobes), of_looks_(2 * looks), lobes_of_looks_(2 * looks) {}
+        : of_places_(places), has_enough_(places, false), of_lobes_(lobes), of_looks_(2 * looks),
+          lobes_of_looks_(2 * looks) {}
 
     void add(const GatheredSample& sample) {
         for (std::size_t k = 0; k < 3; ++k)
@@ -72,9 +83,10 @@ class GatheredSums {
         ++rays_;
     }
     std::uint64_t rays() const { return rays_; }
+    /// Of places as they were at the end of the last pass, so that all of a patch is gathered or nothing.
     bool enough(const LightPlaces& places) const {
         for (std::size_t k = 0; k < 3; ++k)
-            if (places.weights[k] > 0 && of_places_[places.places[k]].weight < kEnough)
+            if (places.weights[k] > 0 && !has_enough_[places.places[k]])
                 return false;
         return true;
     }
@@ -90,6 +102,11 @@ class GatheredSums {
         for (std::size_t place = 0; place < moments_of_places_.number.size(); ++place)
             if (const std::uint32_t number = moments_of_places_.number[place])
                 surfaces.set_gradient(std::uint32_t(place), moments_of_places_.moments[number - 1].gradient());
+    }
+
+    void end_pass() {
+        for (std::size_t place = 0; place < of_places_.size(); ++place)
+            has_enough_[place] = of_places_[place].weight >= kEnough;
     }
 
     /// To be called after one ray a pixel.
@@ -132,8 +149,10 @@ class GatheredSums {
     static glm::dvec3 ratio(const LookSum& sum) {
         glm::dvec3 result(1.);
         for (std::size_t c = 0; c < 3; ++c)
-            if (sum.solved[c] > 0)
-                result[c] = sum.gathered[c] / sum.solved[c];
+            if (sum.solved[c] > 0) {
+                const double prior = kRaysOfPrior * sum.solved[c] / sum.weight;
+                result[c] = (sum.gathered[c] + prior) / (sum.solved[c] + prior);
+            }
         return result;
     }
     /// What was solved as black has nothing to scale: it becomes what was gathered.
@@ -143,7 +162,8 @@ class GatheredSums {
         for (std::size_t c = 0; c < 3; ++c) {
             const double mean = double(sum.solved[c]) / double(sum.weight);
             const double gathered = double(sum.gathered[c]) + kRaysOfPrior * mean * ratio_of_look[c];
-            result[c] = float(mean > 0 ? double(light[c]) * gathered / (mean * rays) : gathered / rays);
+            result[c] = float(mean > 0 ? double(light[c]) * gathered / (mean * rays)
+                                       : double(sum.gathered[c]) / double(sum.weight));
         }
         return result;
     }
@@ -164,7 +184,9 @@ class GatheredSums {
     }
 
     Moments moments_of_places_, moments_of_lobes_;
-    std::vector<Sum> of_places_, of_lobes_;
+    std::vector<Sum> of_places_;
+    std::vector<bool> has_enough_;
+    std::vector<Sum> of_lobes_;
     std::vector<LookSum> of_looks_, lobes_of_looks_;
     std::uint64_t rays_ = 0;
 };
@@ -191,7 +213,8 @@ class Gathering {
         std::vector<GatheredSample> samples;
         ShadingScratch scratch;
         for (std::size_t k = 0; k < hits.size(); ++k) {
-            if (!hits[k].found || hits[k].hit.ground)
+            if (!hits[k].found || hits[k].hit.ground ||
+                hits[k].hit.distance > incoming_.ground_distance(frame_.position, hits[k].direction))
                 continue;
             const SurfacePoint at = surfaces_.point(frame_.position, hits[k]);
             if (const LightPlaces places = surfaces_.places(at); !sums.enough(places))
@@ -210,7 +233,7 @@ class Gathering {
         sample.point = at.point;
         sample.origin = patches.positions[patches.triangles[patches.patches[at.patch].first_triangle].x];
         sample.is_flat = !at.smooth;
-        sample.solved = glm::vec3(displayable(surfaces_.solved(at)));
+        sample.solved = summable(surfaces_.solved(at));
         sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
         const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
         const float choice = numbers.single();
@@ -218,9 +241,8 @@ class Gathering {
         sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
         sample.lobe = gloss_.lobe_of_patch(at);
         if (sample.lobe) {
-            sample.lobe_open = glm::vec3(displayable(gloss_.open_light(at, hit.direction)));
-            sample.lobe_correction =
-                glm::vec3(displayable(gloss_.correction(at, hit.direction, mirrored, index, scratch)));
+            sample.lobe_open = summable(gloss_.open_light(at, hit.direction));
+            sample.lobe_correction = summable(gloss_.correction(at, hit.direction, mirrored, index, scratch));
         }
         return sample;
     }
@@ -235,8 +257,8 @@ class Gathering {
         const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
         const bool before = choice < share;
         const glm::vec3 direction = about(cosine_direction(place), before ? normal : -normal);
-        const glm::vec3 seen(displayable(incoming_.along(at.point, direction, index, scratch)
-                                             .value_or(lat_long_radiance(environment_.remainder, direction))));
+        const glm::vec3 seen = summable(incoming_.along(at.point, direction, index, scratch)
+                                            .value_or(lat_long_radiance(environment_.remainder, direction)));
         return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
     }
 
@@ -267,6 +289,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     GatheredSums sums(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1), gloss.lobe_count());
     progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
     for (int pass = 0; pass < rays; ++pass) {
+        const std::uint64_t before = sums.rays();
         for (int first = 0; first < options.height; first += kRowsAtOnce) {
             std::vector<std::vector<GatheredSample>> rows(
                 static_cast<std::size_t>(std::min(kRowsAtOnce, options.height - first)));
@@ -282,6 +305,12 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
         }
         if (pass == 0)
             sums.tell_large_patches();
+        sums.end_pass();
+        if (sums.rays() == before) {
+            report.skips.push_back({"gathering on", "all that is in view has rays enough",
+                                    std::to_string(rays - pass) + " of " + std::to_string(rays) + " rays a pixel"});
+            break;
+        }
     }
     sums.correct(surfaces);
     sums.give_gradients(surfaces);

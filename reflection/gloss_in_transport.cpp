@@ -59,12 +59,17 @@ void take_gloss_out(const std::vector<Optics>& with_gloss, ShadedScene& scene) {
     std::vector<SideFactors> of_optics;
     for (std::size_t k = 0; k < with_gloss.size(); ++k)
         of_optics.push_back(factors(with_gloss[k], patches.optics[k]));
+    const auto changes = [](const SideFactors& factor) {
+        return factor.sum != glm::vec3(1.f) || factor.difference != glm::vec3(1.f);
+    };
+    if (std::none_of(of_optics.begin(), of_optics.end(), changes))
+        return; // all is matt
     scene.gloss_front.assign(patches.patches.size(), glm::vec3(0.f));
     scene.gloss_back = scene.gloss_front;
     for (std::size_t p = 0; p < patches.patches.size(); ++p) {
         const SideFactors& factor = of_optics[patches.patches[p].optics];
         glm::vec3 &front = scene.indirect_front[p], &back = scene.indirect_back[p];
-        if (factor.sum == glm::vec3(1.f) && factor.difference == glm::vec3(1.f))
+        if (!changes(factor))
             continue;
         const glm::vec3 sum = 0.5f * factor.sum * (front + back), apart = 0.5f * factor.difference * (front - back),
                         matt_front = glm::max(sum + apart, glm::vec3(0.f)),

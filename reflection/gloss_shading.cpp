@@ -11,6 +11,7 @@ namespace {
 constexpr std::uint32_t kLobePattern = 0x9e3779b9u, kChancePattern = 0x7f4a7c15u;
 constexpr float kRaysByShare = 4; ///< chance of a ray over the gloss's share of what is seen
 constexpr float kLeastChance = 0.25f;
+constexpr float kLeastShared = 0.25f; ///< roughness: what smoother patches mirror varies over them
 
 } // namespace
 
@@ -30,7 +31,7 @@ GlossShading::GlossShading(const ShadedScene& scene, const Environment& environm
                        std::clamp(lobes->most, kLeastRoughness, 1.f), progress, report);
     for (const SurfaceLook& look : scene.looks)
         even_.push_back(!look.gloss.is_matt() && !look.smooth_normals && !look.gloss.roughness_texture &&
-                        !look.gloss.roughness_gradient);
+                        !look.gloss.roughness_gradient && look.gloss.roughness >= kLeastShared);
     if (std::find(even_.begin(), even_.end(), true) != even_.end())
         of_patches_.assign(2 * scene.patches->patches.size(), glm::vec3(-1.f));
 }

@@ -31,8 +31,8 @@ class GlossShading {
     glm::vec3 correction(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
                          SampleIndex sample, ShadingScratch& scratch) const;
 
-    /// A flat patch of one roughness sees nearly the same in its lobe all over: which of lobe_count() it has. Empty: it
-    /// is not flat, not even or not glossy.
+    /// A flat patch of one, not too small roughness sees nearly the same in its lobe all over: which of lobe_count() it
+    /// has. Empty: it is not flat, not even or not glossy.
     std::optional<std::uint32_t> lobe_of_patch(const SurfacePoint& at) const;
     std::size_t lobe_count() const { return of_patches_.size(); }
     /// Is taken from now on for all points of this side of the patch.

@@ -29,7 +29,7 @@ GroundRadiance GroundShading::radiance(const glm::vec3& origin, const glm::vec3&
         return {};
     const glm::vec3 point = look_.point(origin, direction, distance);
     return look_.mean_albedo() ? diffuse_plane(point, direction, distance, sample, scratch)
-                               : shadowed_backdrop(point, direction, sample, scratch);
+                               : shadowed_backdrop(point, backdrop_.seen(direction), sample, scratch);
 }
 
 glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
@@ -38,7 +38,7 @@ glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& 
         return glm::vec3(0.f);
     const glm::vec3 point = look_.point(origin, direction, distance);
     return look_.mean_albedo() ? light_at(point, *look_.mean_albedo(), sample, scratch).total
-                               : shadowed_backdrop(point, direction, sample, scratch).total;
+                               : shadowed_backdrop(point, backdrop_.remainder(direction), sample, scratch).total;
 }
 
 GroundRadiance GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
@@ -60,13 +60,12 @@ GroundRadiance GroundShading::diffuse_plane(const glm::vec3& point, const glm::v
     return radiance;
 }
 
-GroundRadiance GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+GroundRadiance GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen, SampleIndex sample,
                                                 ShadingScratch& scratch) const {
     // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which
     // it was photographed sees every point of the ground in the direction in which the photograph has it, so only the
     // light on it must change: times (light with the scene) / (light without it). Far from the scene that tends to 1
     // and is made 1, because there the photograph shows things that stand, not ground.
-    const glm::vec3 seen = backdrop_.seen(direction);
     const float near = std::clamp((12 - look_.away(point)) / 8, 0.f, 1.f);
     if (near <= 0)
         return {seen, glm::vec3(0.f), glm::vec3(0.f)};

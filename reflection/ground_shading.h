@@ -23,14 +23,16 @@ class GroundShading {
     /// Radiance of the ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
     GroundRadiance radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
                             ShadingScratch& scratch) const;
-    /// For rays that left the scene: of the mean soil, without air before it, as the transport has it.
+    /// For rays that left the scene: of the mean soil, without air before it and without split-off lights
+    /// in the backdrop, which are tested by themselves.
     glm::vec3 met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
                            ShadingScratch& scratch) const;
 
   private:
     GroundRadiance diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
                                  ShadingScratch& scratch) const;
-    GroundRadiance shadowed_backdrop(const glm::vec3& point, const glm::vec3& direction, SampleIndex sample,
+    /// `seen`: what the backdrop shows there.
+    GroundRadiance shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen, SampleIndex sample,
                                      ShadingScratch& scratch) const;
     GroundRadiance light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
                             ShadingScratch& scratch) const;

@@ -20,6 +20,11 @@ class IncomingRadiance {
     std::optional<glm::vec3> along(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
                                    ShadingScratch& scratch) const;
 
+    /// Where a ray meets the ground; infinite if it doesn't.
+    float ground_distance(const glm::vec3& origin, const glm::vec3& direction) const {
+        return ground_.distance(origin, direction);
+    }
+
   private:
     const RayQueries& queries_;
     const SurfaceShading& surfaces_;

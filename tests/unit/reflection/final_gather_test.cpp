@@ -90,6 +90,30 @@ TEST(FinalGather, ChangesNothingWhereSolvedLightIsRight) {
         EXPECT_NEAR(value, 0.6f, 1e-4f);
 }
 
+TEST(FinalGather, GathersTheWholeOfALargePatch) {
+    // More rows than are gathered at once; the leaf's far end lies in the shade of a second cover.
+    HalfHiddenLeaf leaf;
+    add_rectangle(leaf.patches, {0, 0.3f, 0}, {1, 0, 0}, {0, 0, -2}, 1);
+    leaf.camera = camera_at({0.5f, 1.5f, 2}, {0.5f, 0, 0}, 0.12f); // sees below that one as well
+    leaf.scene = evenly_shaded(leaf.patches, glm::vec3(0.f));
+    leaf.scene.indirect_front[0] = leaf.scene.radiance_front[0] = 0.2f * glm::vec3(1, 2, 3);
+    leaf.scene.looks.resize(1);
+    leaf.scene.triangle_look.assign(leaf.patches.triangles.size(), 0);
+    PictureOptions tall = without_ground(96, 160, 4);
+    const double gathered = mean_of(leaf.solved(8, tall).radiance);
+    tall.samples = 64;
+    const double truth =
+        mean_of(render_path_traced(leaf.scene, RayQueries(leaf.patches), leaf.sky, leaf.camera, tall, quiet).radiance);
+    EXPECT_NEAR(gathered / truth, 1, 0.02);
+}
+
+TEST(FinalGather, LightsWhatWasSolvedAsBlackAlsoByFewRays) {
+    HalfHiddenLeaf leaf;
+    leaf.scene.indirect_front[0] = glm::vec3(0.f);
+    const double truth = mean_of(leaf.traced(64));
+    EXPECT_NEAR(mean_of(leaf.solved(1, without_ground(2, 2, 4)).radiance) / truth, 1, 0.25);
+}
+
 TEST(FinalGather, IsTheSameBitsForAnyNumberOfThreads) {
     Gloss gloss;
     gloss.normal_reflectance = glm::vec3(0.04f);
