@@ -38,8 +38,8 @@ void check_picture_options(const PictureOptions& options) {
     if (options.width < 1 || options.height < 1 || double(options.width) * options.height > 1e9)
         throw InputError("picture: " + std::to_string(options.width) + " x " + std::to_string(options.height) +
                          " pixels; give 1 to 1e9 in all");
-    if (options.gather_rays < 0 || options.gather_rays > 1024)
-        throw InputError("picture: " + std::to_string(options.gather_rays) + " gathering rays; give 0 to 1024");
+    if (const int rays = gather_rays_of(options); rays < 0 || rays > 1024)
+        throw InputError("picture: " + std::to_string(rays) + " gathering rays; give 0 to 1024");
     if (options.samples < 1 || options.samples > (1 << 16) || options.light_samples < 1 ||
         options.light_samples > (1 << 12))
         throw InputError("picture: " + std::to_string(options.samples) + " samples and " +

@@ -1,4 +1,5 @@
 #include "reflection/final_gather.h"
+#include "common/directions/about_axis.h"
 #include "common/environment/lat_long.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
@@ -29,12 +30,6 @@ std::uint32_t curve_index(std::uint32_t x, std::uint32_t y) {
         return (v | v << 1) & 0x55555555u;
     };
     return spread(x & 0xffffu) | spread(y & 0xffffu) << 1;
-}
-
-glm::vec3 about(const glm::vec3& local, const glm::vec3& axis) {
-    const glm::vec3 helper = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-    const glm::vec3 tangent = glm::normalize(glm::cross(helper, axis)), bitangent = glm::cross(axis, tangent);
-    return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
 }
 
 /// A millionfold sum of such numbers is finite. What is not a number has no part in it.
@@ -213,8 +208,7 @@ class Gathering {
         std::vector<GatheredSample> samples;
         ShadingScratch scratch;
         for (std::size_t k = 0; k < hits.size(); ++k) {
-            if (!hits[k].found || hits[k].hit.ground ||
-                hits[k].hit.distance > incoming_.ground_distance(frame_.position, hits[k].direction))
+            if (!hits[k].shows_surface(incoming_.ground_distance(frame_.position, hits[k].direction)))
                 continue;
             const SurfacePoint at = surfaces_.point(frame_.position, hits[k]);
             if (const LightPlaces places = surfaces_.places(at); !sums.enough(places))
@@ -256,7 +250,7 @@ class Gathering {
         const float share = reflected / (reflected + transmitted);
         const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
         const bool before = choice < share;
-        const glm::vec3 direction = about(cosine_direction(place), before ? normal : -normal);
+        const glm::vec3 direction = about_axis(cosine_direction(place), before ? normal : -normal);
         const glm::vec3 seen = summable(incoming_.along(at.point, direction, index, scratch)
                                             .value_or(lat_long_radiance(environment_.remainder, direction)));
         return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
@@ -277,7 +271,7 @@ class Gathering {
 void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, const CameraFrame& frame,
                        const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
                        SurfaceShading& surfaces, GlossShading& gloss, Progress& progress, WorkReport& report) {
-    const int rays = options.gather_rays;
+    const int rays = gather_rays_of(options);
     if (rays == 0)
         return;
     if (!options.pixel_shadows) {

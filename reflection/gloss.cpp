@@ -1,4 +1,5 @@
 #include "reflection/gloss.h"
+#include "common/directions/about_axis.h"
 #include "common/directions/lobes.h"
 
 #include <algorithm>
@@ -60,11 +61,8 @@ LobeSample sample_gloss(const glm::vec3& mirrored, float roughness, glm::vec2 nu
     // Share of what is drawn within w: w (1 + x)/(1 + x w).
     const double w = numbers.x / (1 + falloff * (1 - double(numbers.x)));
     const double sine = std::sqrt(std::max(0., w * (2 - w))), azimuth = 2 * kPiDouble * numbers.y;
-    const glm::dvec3 r(mirrored);
-    const glm::dvec3 helper = std::abs(r.x) > 0.5 ? glm::dvec3(0, 1, 0) : glm::dvec3(1, 0, 0);
-    const glm::dvec3 tangent = glm::normalize(glm::cross(helper, r)), bitangent = glm::cross(r, tangent);
-    const glm::dvec3 direction = (1 - w) * r + sine * (std::cos(azimuth) * tangent + std::sin(azimuth) * bitangent);
-    const glm::vec3 unit(glm::normalize(direction));
+    const glm::dvec3 local(sine * std::cos(azimuth), 1 - w, sine * std::sin(azimuth));
+    const glm::vec3 unit(about_axis(local, glm::dvec3(mirrored)));
     const float density = drawn_density(falloff, w);
     const double lobe = ggx_lobe_value(std::max(roughness, kLeastRoughness), 2 * w);
     return {unit, density > 0 ? float(lobe / density) : 0.f, density};

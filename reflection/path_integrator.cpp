@@ -1,4 +1,5 @@
 #include "reflection/path_integrator.h"
+#include "common/directions/about_axis.h"
 #include "common/directions/lobes.h"
 #include "reflection/glossy_light.h"
 #include "reflection/sampling.h"
@@ -19,13 +20,6 @@ float sum(const glm::vec3& rgb) {
 
 float largest(const glm::vec3& rgb) {
     return std::max({rgb.r, rgb.g, rgb.b});
-}
-
-/// `local` is about +Y.
-glm::vec3 turned(const glm::vec3& local, const glm::vec3& axis) {
-    const glm::vec3 helper = std::abs(axis.x) > 0.5f ? glm::vec3(0, 1, 0) : glm::vec3(1, 0, 0);
-    const glm::vec3 tangent = glm::normalize(glm::cross(helper, axis)), bitangent = glm::cross(axis, tangent);
-    return glm::normalize(local.x * tangent + local.y * axis + local.z * bitangent);
 }
 
 glm::vec3 lobe_of(const PathVertex& vertex, const glm::vec3& direction) {
@@ -103,7 +97,7 @@ PathIntegrator::Step PathIntegrator::scatter_diffuse(const PathVertex& vertex, f
         step.direction = remainder_.sample(place, choice / remainder_share_).direction;
     } else {
         const bool back = (choice - remainder_share_) / (1 - remainder_share_) >= share;
-        step.direction = turned(cosine_direction(place), back ? -vertex.normal : vertex.normal);
+        step.direction = about_axis(cosine_direction(place), back ? -vertex.normal : vertex.normal);
     }
     const float cosine = glm::dot(vertex.normal, step.direction);
     const float lobe = (cosine > 0 ? share : 1 - share) * std::abs(cosine) / kPi;

@@ -25,7 +25,7 @@ struct TruthOfPicture {
     SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, PathNumbers& numbers) const {
         const glm::vec3 direction = hit.direction;
         const float ground_distance = ground.distance(origin, direction);
-        if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
+        if (hit.shows_surface(ground_distance)) {
             const SurfacePoint at = paths.points().at(origin, hit);
             return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(),
                                          paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers));

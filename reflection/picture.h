@@ -9,6 +9,7 @@
 #include "reflection/gloss.h"
 #include "reflection/relief/height_field.h"
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -79,9 +80,10 @@ struct PictureOptions {
     int width = 1280, height = 960;
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
     int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
-    /// render_picture: rays a pixel that correct the solved light where the camera looks (final_gather.h). 0: the
-    /// picture shows what was solved.
-    int gather_rays = 0;
+    /// render_picture: rays a pixel that correct the solved light where the camera looks (final_gather.h). Empty: a
+    /// quarter of `samples`, 1 to 16; with them a coarse solution does as well as a fine one. 0: the picture shows what
+    /// was solved.
+    std::optional<int> gather_rays;
     std::optional<float> exposure_stops; ///< empty = automatic; for tone_map
     bool pixel_shadows = true; ///< else surfaces show the light that was solved for their patches, gloss in it
     PictureGround ground = PictureGround::automatic;
@@ -97,6 +99,10 @@ inline bool is_traced(const PictureOptions& options, int x, int y) {
     const int rows = options.every_row > 1 ? options.every_row : 1,
               columns = options.every_column > 1 ? options.every_column : 1;
     return y % rows == 0 && (x + 3 * (y / rows)) % columns == 0;
+}
+
+inline int gather_rays_of(const PictureOptions& options) {
+    return options.gather_rays.value_or(std::clamp(options.samples / 4, 1, 16));
 }
 
 /// A camera that shows all of a scene, from a little above the ground, as a photographer would: level with a person's

@@ -38,6 +38,9 @@ struct CameraHit {
     bool is_relief = false; ///< `hit` tells the distance to relief and the place of the mesh above it
     RayHit hit;
     ReliefPoint relief;
+
+    /// A surface of the scene, where the ray meets the ground at that distance or not at all (infinite).
+    bool shows_surface(float ground_distance) const { return found && !hit.ground && hit.distance <= ground_distance; }
 };
 
 class ReliefSurfaces {

@@ -33,7 +33,7 @@ struct Renderer {
     SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, ShadingScratch& scratch) const {
         const glm::vec3 direction = hit.direction;
         const float ground_distance = ground.distance(origin, direction);
-        if (hit.found && !hit.hit.ground && hit.hit.distance <= ground_distance) {
+        if (hit.shows_surface(ground_distance)) {
             const SurfacePoint at = surfaces.point(origin, hit);
             SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
             light.reflection += gloss.radiance(at, direction, light.total(), sample, scratch);

@@ -141,6 +141,7 @@ Image draw(const PatchScene& scene, const std::vector<glm::vec3>& colors, const 
     PictureOptions options;
     options.width = options.height = panel;
     options.pixel_shadows = false;
+    options.gather_rays = 0;
     options.ground = PictureGround::none;
     const RayQueries queries(scene);
     Image picture =

@@ -83,6 +83,7 @@ Image draw(const ShadedFile& reference, const std::vector<double>& errors, doubl
     shaded.indirect_back = shaded.radiance_back;
     PictureOptions options;
     options.pixel_shadows = false;
+    options.gather_rays = 0;
     options.ground = PictureGround::none;
     const RayQueries queries(reference.scene);
     const Camera camera = frame_scene(bounds_of(reference.scene), float(options.width) / float(options.height));

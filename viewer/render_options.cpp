@@ -146,6 +146,7 @@ PictureOptions picture_options(const RenderCommandOptions& o, const SceneDescrip
     picture.seed = o.seed.value_or(picture.seed);
     if (o.exposure_stops)
         picture.exposure_stops = o.exposure_stops;
+    picture.gather_rays = o.gather_rays;
     picture.layers = std::any_of(o.outputs.begin(), o.outputs.end(), is_exr);
     return picture;
 }
@@ -190,7 +191,6 @@ CompleteRender complete_render_options(const CLI::App& app, RenderCommandOptions
         throw InputError("--gather-rays: path-traced follows every path to its end; leave it out");
     check_error(o.error);
     complete.options.error = o.error.value_or(complete.options.error);
-    complete.options.gather_rays = o.gather_rays;
     complete.scene = described_scene(app, o);
     complete_outputs(o, complete.scene);
     complete.options.picture = picture_options(o, complete.scene);

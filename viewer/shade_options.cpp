@@ -157,6 +157,7 @@ void complete_outputs(ShadeOptions& o) {
     o.picture.width = size.width;
     o.picture.height = size.height;
     o.picture.seed = o.shading.seed;
+    o.picture.gather_rays = 0; // it shows what was solved
     check_exposure(o.picture.exposure_stops, o.image.empty() ? std::vector<fs::path>() : std::vector{o.image});
     if (o.surroundings.ground == false)
         o.picture.ground = PictureGround::none;

@@ -6,6 +6,7 @@
 #include <hwy/highway.h>
 
 #include "reflection/relief/fit_planes.h"
+#include "reflection/relief/lane_vectors-inl.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,22 +22,11 @@ HWY_BEFORE_NAMESPACE();
 namespace kokage::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using Tag = hn::CappedTag<float, 16>;
-using IntTag = hn::RebindToSigned<Tag>;
-using Vec = hn::Vec<Tag>;
-using Int = hn::Vec<IntTag>;
-using Mask = hn::Mask<Tag>;
-constexpr std::size_t kLanes = hn::MaxLanes(Tag());
+using namespace relief_lanes::HWY_NAMESPACE;
 
 constexpr float kRounding = 0x1p-21f; ///< more than what depths over a plane lose to rounding
 constexpr int kAllPointsLevel = 3;    ///< up to here all corners of cells are points
 constexpr int kMostPoints = 81;
-
-HWY_INLINE Vec Constant(float value) {
-    return hn::Set(Tag(), value);
-}
 
 /// Points in a square grid around the middle, with a depth in every lane.
 struct Points {

@@ -1,3 +1,4 @@
+#include "common/directions/about_axis.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
 #include "common/services/stopwatch.h"
@@ -55,13 +56,6 @@ std::vector<OpenPoint> points_of(const HeightField& field, bool at_texels, Openn
     return points;
 }
 
-/// `up` is about +Y.
-glm::vec3 turned_about(const glm::vec3& normal, const glm::vec3& up) {
-    const glm::vec3 tangent = glm::normalize(glm::cross(glm::vec3(0, 1, 0), normal)),
-                    bitangent = glm::cross(normal, tangent);
-    return glm::normalize(up.x * tangent + up.z * bitangent + up.y * normal);
-}
-
 /// Share of a uniform sky's light that reaches each point: `rays` exact shadow rays each.
 std::vector<double> true_openness(const ReliefTracer& tracer, std::span<const OpenPoint> points, std::uint32_t rays,
                                   Progress& progress) {
@@ -76,7 +70,7 @@ std::vector<double> true_openness(const ReliefTracer& tracer, std::span<const Op
             from.depth = points[k].depth + kShadowLift - kLift;
             for (std::uint32_t r = 0; r < rays; ++r)
                 sky[r] = relief_shadow_ray(
-                    from, turned_about(points[k].normal, cosine_direction(multi_jittered(r, rays, std::uint32_t(k)))),
+                    from, about_axis(cosine_direction(multi_jittered(r, rays, std::uint32_t(k))), points[k].normal),
                     kScale);
             tracer.occluded(sky, hidden);
             open[k] = 1 - double(std::count(hidden.begin(), hidden.end(), 1)) / rays;

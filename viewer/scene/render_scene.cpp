@@ -6,8 +6,6 @@
 #include "viewer/scene/scene_memory.h"
 #include "viewer/scene/stage_clock.h"
 
-#include <algorithm>
-
 namespace kokage {
 namespace {
 
@@ -46,9 +44,7 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
         shaded.radiance_back = std::move(solution.radiance.back);
         take_gloss_out(with_gloss, shaded);
         const RayQueries queries(scene.patches);
-        PictureOptions picture = options.picture;
-        picture.gather_rays = options.gather_rays.value_or(std::clamp(picture.samples / 4, 1, 16));
-        return render_picture(shaded, queries, scene.environment, scene.camera, picture, progress);
+        return render_picture(shaded, queries, scene.environment, scene.camera, options.picture, progress);
     });
 }
 

@@ -15,10 +15,6 @@ struct RenderOptions {
     /// What is left out of the light: weak lights are merged (ShadingOptions), and light maps, which no picture reads,
     /// are not made.
     bool merge_weak_lights = true, skip_light_maps = true;
-    /// Rays a pixel that correct the solved light where the camera looks (PictureOptions::gather_rays, which is not
-    /// read). Empty: a quarter of the picture's samples, 1 to 16. With them a coarse solution does as well as a fine
-    /// one.
-    std::optional<int> gather_rays;
 };
 
 struct RenderedScene {

@@ -30,11 +30,13 @@ inline Camera camera_at(const glm::vec3& position, const glm::vec3& target, floa
     return camera;
 }
 
+/// Shows light as it was solved.
 inline PictureOptions small_picture(int width, int height, int samples = 16) {
     PictureOptions options;
     options.width = width;
     options.height = height;
     options.samples = samples;
+    options.gather_rays = 0;
     return options;
 }
 
