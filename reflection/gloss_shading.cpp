@@ -33,11 +33,11 @@ GlossShading::GlossShading(const ShadedScene& scene, const Environment& environm
         even_.push_back(!look.gloss.is_matt() && !look.smooth_normals && !look.gloss.roughness_texture &&
                         !look.gloss.roughness_gradient && look.gloss.roughness >= kLeastShared);
     if (std::find(even_.begin(), even_.end(), true) != even_.end())
-        of_patches_.assign(2 * scene.patches->patches.size(), glm::vec3(-1.f));
+        of_patches_ = ValuesOfSome<LobeLight>(2 * scene.patches->patches.size());
 }
 
 std::optional<std::uint32_t> GlossShading::lobe_of_patch(const SurfacePoint& at) const {
-    if (of_patches_.empty() || at.relief || !even_[scene_.triangle_look[at.triangle]])
+    if (of_patches_.places() == 0 || at.relief || !even_[scene_.triangle_look[at.triangle]])
         return std::nullopt;
     return 2 * at.patch + !at.front;
 }
@@ -72,8 +72,9 @@ glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direct
                                  SampleIndex sample, ShadingScratch& scratch) const {
     if (!remainder_ || !(at.gloss.r > 0 || at.gloss.g > 0 || at.gloss.b > 0))
         return glm::vec3(0.f);
-    if (const auto lobe = lobe_of_patch(at); lobe && of_patches_[*lobe].r >= 0)
-        return at.gloss * of_patches_[*lobe] * gradients_.at(*lobe, at.point);
+    if (const auto lobe = lobe_of_patch(at))
+        if (const LobeLight* light = of_patches_.find(*lobe))
+            return at.gloss * light->mean * light->gradient.at(at.point);
     const glm::vec3 open = at.gloss * open_light(at, direction);
     const float chance = chance_of_ray(open, beside);
     if (chance < 1 && !(stratified(sample.index, sample.count, sample.pattern ^ kChancePattern) < chance))

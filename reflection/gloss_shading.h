@@ -4,6 +4,7 @@
 #include "reflection/glossy_light.h"
 #include "reflection/incoming_radiance.h"
 #include "reflection/surface_shading.h"
+#include "reflection/values_of_some.h"
 
 #include <optional>
 
@@ -31,14 +32,13 @@ class GlossShading {
     glm::vec3 correction(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
                          SampleIndex sample, ShadingScratch& scratch) const;
 
-    /// A flat patch of one, not too small roughness sees nearly the same in its lobe all over: which of lobe_count() it
-    /// has. Empty: it is not flat, not even or not glossy.
+    /// A flat patch (flat_patches.h) of one, not too small roughness sees nearly the same in its lobe all over: which
+    /// of lobe_count() it has. Empty: it is smooth, uneven or not glossy.
     std::optional<std::uint32_t> lobe_of_patch(const SurfacePoint& at) const;
-    std::size_t lobe_count() const { return of_patches_.size(); }
+    std::size_t lobe_count() const { return of_patches_.places(); }
     /// Is taken from now on for all points of this side of the patch.
     void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light, const PatchGradient& gradient) {
-        of_patches_[lobe] = light;
-        gradients_.set(of_patches_.size(), lobe, gradient);
+        of_patches_.at(lobe) = {light, gradient};
     }
 
   private:
@@ -51,8 +51,11 @@ class GlossShading {
     const IncomingRadiance& incoming_;
     std::optional<GlossyRemainder> remainder_; ///< empty: no gloss is drawn by itself
     std::vector<bool> even_;                   ///< looks whose patches may share one lobe's light
-    PatchGradients gradients_;
-    std::vector<glm::vec3> of_patches_; ///< front and back of each patch; negative: not known
+    struct LobeLight {
+        glm::vec3 mean{0.f};
+        PatchGradient gradient;
+    };
+    ValuesOfSome<LobeLight> of_patches_; ///< front and back of each patch; no places: none shares it
 };
 
 } // namespace kokage

@@ -7,6 +7,7 @@ namespace kokage {
 std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const glm::vec3& direction,
                                                  SampleIndex sample, ShadingScratch& scratch) const {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    ++scratch.met_rays;
     RayHit hit;
     const float ground_distance = ground_.distance(origin, direction);
     if (queries_.first_hit(origin, direction, queries_.ray_offset(), ground_distance, hit) && !hit.ground)

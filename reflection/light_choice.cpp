@@ -17,18 +17,10 @@ constexpr float kLeastSquaredDistance = 1e-20f;
 constexpr float kWide = 0.05f; ///< half angle; the sun's is 0.005
 constexpr std::uint32_t kWideFactor = 4;
 
-/// Directions that are near one another mostly have near numbers: the bits of both lat-long coordinates, interleaved
-/// (Morton 1966).
-std::uint32_t place_on_curve(const glm::vec3& direction) {
-    const glm::vec2 uv = lat_long_from_direction(direction);
-    auto spread = [](float x) {
-        auto bits = std::uint32_t(std::clamp(x, 0.f, 1.f) * 65535);
-        bits = (bits | bits << 8) & 0x00ff00ffu;
-        bits = (bits | bits << 4) & 0x0f0f0f0fu;
-        bits = (bits | bits << 2) & 0x33333333u;
-        return (bits | bits << 1) & 0x55555555u;
-    };
-    return spread(uv.x) | spread(uv.y) << 1;
+/// Directions that are near one another mostly have near numbers.
+std::uint32_t place_of(const glm::vec3& direction) {
+    const glm::vec2 uv = glm::clamp(lat_long_from_direction(direction), 0.f, 1.f) * 65535.f;
+    return place_on_curve(std::uint32_t(uv.x), std::uint32_t(uv.y));
 }
 
 float largest(const glm::vec3& rgb) {
@@ -53,9 +45,8 @@ LightChoice::LightChoice(const Environment& environment, int light_samples)
 LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32_t light_samples) {
     const bool wide = light.half_angle > kWide;
     Distant result{light, std::sin(std::min(light.half_angle, kPi / 2)), (wide ? kWideFactor : 1) * light_samples, {}};
-    std::stable_sort(result.light.texels.begin(), result.light.texels.end(), [](const auto& a, const auto& b) {
-        return place_on_curve(a.direction) < place_on_curve(b.direction);
-    });
+    std::stable_sort(result.light.texels.begin(), result.light.texels.end(),
+                     [](const auto& a, const auto& b) { return place_of(a.direction) < place_of(b.direction); });
     double total = 0;
     for (const DistantLight::Texel& texel : result.light.texels)
         result.shares.push_back(total += luminance(texel.irradiance));

@@ -47,10 +47,9 @@ PatchGradient PatchMoments::gradient() const {
 }
 
 void PatchGradients::set(std::size_t places, std::uint32_t place, const PatchGradient& gradient) {
-    if (number_.empty())
-        number_.assign(places, 0);
-    gradients_.push_back(gradient);
-    number_[place] = std::uint32_t(gradients_.size());
+    if (gradients_.places() == 0)
+        gradients_ = ValuesOfSome<PatchGradient>(places);
+    gradients_.at(place) = gradient;
 }
 
 } // namespace kokage

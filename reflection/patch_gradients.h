@@ -2,9 +2,7 @@
 // How light changes over a flat patch: a line through what its rays gathered, by ridge regression (Hoerl and Kennard
 // 1970). Private to reflection.
 #include "common/types.h"
-
-#include <cstdint>
-#include <vector>
+#include "reflection/values_of_some.h"
 
 namespace kokage {
 
@@ -39,12 +37,13 @@ class PatchGradients {
     void set(std::size_t places, std::uint32_t place, const PatchGradient& gradient);
     /// 1 where none was set.
     float at(std::uint32_t place, const glm::vec3& point) const {
-        return place < number_.size() && number_[place] != 0 ? gradients_[number_[place] - 1].at(point) : 1.f;
+        const PatchGradient* gradient = place < gradients_.places() ? gradients_.find(place) : nullptr;
+        return gradient ? gradient->at(point) : 1.f;
     }
+    std::size_t bytes() const { return gradients_.bytes(); }
 
   private:
-    std::vector<std::uint32_t> number_; ///< from 1; 0: none
-    std::vector<PatchGradient> gradients_;
+    ValuesOfSome<PatchGradient> gradients_;
 };
 
 } // namespace kokage

@@ -98,6 +98,17 @@ float stratified(std::uint32_t index, std::uint32_t count, std::uint32_t pattern
     return std::min(kBelowOne, (float(stratum) + hashed_uniform(stratum, pattern * 0x967a889bu)) / float(count));
 }
 
+std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y) {
+    const auto spread = [](std::uint32_t bits) {
+        bits &= 0xffffu;
+        bits = (bits | bits << 8) & 0x00ff00ffu;
+        bits = (bits | bits << 4) & 0x0f0f0f0fu;
+        bits = (bits | bits << 2) & 0x33333333u;
+        return (bits | bits << 1) & 0x55555555u;
+    };
+    return spread(x) | spread(y) << 1;
+}
+
 glm::vec3 cosine_direction(glm::vec2 u) {
     const glm::vec2 square = 2.f * u - 1.f;
     float radius = 0, angle = 0;

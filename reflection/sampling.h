@@ -12,6 +12,9 @@ glm::vec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t
 /// Point `index` of `count` jittered strata of [0,1), in an order that depends on the pattern.
 float stratified(std::uint32_t index, std::uint32_t count, std::uint32_t pattern);
 
+/// Of the lowest 16 bits of both: places in a row along the curve lie together (Morton 1966).
+std::uint32_t place_on_curve(std::uint32_t x, std::uint32_t y);
+
 /// Cosine-distributed direction about +Y from a point of the unit square, by the concentric map (Shirley and Chiu
 /// 1997).
 glm::vec3 cosine_direction(glm::vec2 u);

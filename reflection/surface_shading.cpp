@@ -1,31 +1,15 @@
 #include "reflection/surface_shading.h"
 #include "common/services/error.h"
-#include "common/services/random.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstring>
 #include <string>
-#include <unordered_map>
 
 namespace kokage {
 namespace {
 
 constexpr float kMostTurn = 8;             ///< times the light that the mesh gets
 constexpr float kLeastMetRoughness = 0.3f; ///< of what rays after the camera's meet
-
-struct PositionHash {
-    std::size_t operator()(const glm::vec3& p) const {
-        std::array<std::uint32_t, 3> bits;
-        std::memcpy(bits.data(), &p, sizeof(bits));
-        return hash64(hash64(hash64(bits[0]) + bits[1]) + bits[2]);
-    }
-};
-
-} // namespace
-
-namespace {
 
 /// Lights that relief hides.
 void leave_out_hidden(const ReliefPoint& relief, ShadingScratch& scratch) {
@@ -74,29 +58,14 @@ SurfaceShading::SurfaceShading(const ShadedScene& scene, const RayQueries& queri
 void SurfaceShading::place_light() {
     const PatchScene& patches = *scene_.patches;
     const std::size_t count = patches.patches.size();
-    bool any_smooth = false;
-    for (const SurfaceLook& look : scene_.looks)
-        any_smooth |= look.smooth_normals;
-    std::uint32_t corners = 0;
-    if (any_smooth) {
-        // Corners are joined by place, because texture seams double them.
-        std::unordered_map<glm::vec3, std::uint32_t, PositionHash> numbers;
-        corner_.assign(patches.positions.size(), 0);
-        for (std::size_t t = 0; t < patches.triangles.size(); ++t)
-            if (scene_.looks[scene_.triangle_look[t]].smooth_normals)
-                for (int k = 0; k < 3; ++k) {
-                    const std::uint32_t position = patches.triangles[t][k];
-                    const auto [place, is_new] = numbers.try_emplace(patches.positions[position], corners);
-                    corners += is_new;
-                    corner_[position] = place->second;
-                }
-    }
+    corners_ = smooth_corners(scene_);
+    const std::size_t corners = corners_.count;
     light_.assign(2 * (count + corners), glm::vec3(0.f));
     const std::vector<glm::vec3>*fronts = pixel_shadows_ ? &scene_.indirect_front : &scene_.radiance_front,
           *backs = pixel_shadows_ ? &scene_.indirect_back : &scene_.radiance_back;
     for (const auto& [side, of_patches] : {std::pair(std::size_t(0), fronts), {std::size_t(1), backs}}) {
         std::copy(of_patches->begin(), of_patches->end(), light_.begin() + std::ptrdiff_t(side * (count + corners)));
-        if (any_smooth)
+        if (corners > 0)
             smooth_light(side, *of_patches);
     }
 }
@@ -116,8 +85,8 @@ void SurfaceShading::smooth_light(std::size_t side, const std::vector<glm::vec3>
         const glm::dvec3 a = patches.positions[triangle.x], b = patches.positions[triangle.y],
                          c = patches.positions[triangle.z];
         const double area = glm::length(glm::cross(b - a, c - a));
-        for (int k = 0; k < 3; ++k) {
-            Corner& corner = corners[corner_[triangle[k]]];
+        for (const std::uint32_t k : corners_.of_triangle[t]) {
+            Corner& corner = corners[k];
             corner.light += area * glm::dvec3(of_patches[patches.triangle_patch[t]]);
             corner.area += area;
         }
@@ -132,10 +101,8 @@ LightPlaces SurfaceShading::places(const SurfacePoint& at) const {
     const std::uint32_t first = at.front ? 0 : std::uint32_t(light_.size() / 2);
     if (!at.smooth)
         return {{first + at.patch, first + at.patch, first + at.patch}, {1, 0, 0}};
-    const glm::uvec3 corners = scene_.patches->triangles[at.triangle];
-    return {
-        {first + count + corner_[corners.x], first + count + corner_[corners.y], first + count + corner_[corners.z]},
-        at.weights};
+    const auto& [a, b, c] = corners_.of_triangle[at.triangle];
+    return {{first + count + a, first + count + b, first + count + c}, at.weights};
 }
 
 glm::vec3 SurfaceShading::solved(const SurfacePoint& at) const {

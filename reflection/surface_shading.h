@@ -5,6 +5,7 @@
 #include "reflection/light_choice.h"
 #include "reflection/patch_gradients.h"
 #include "reflection/picture.h"
+#include "reflection/smooth_corners.h"
 #include "reflection/surface_points.h"
 
 #include <array>
@@ -18,6 +19,7 @@ struct ShadingScratch {
     std::vector<float> weights;
     std::vector<glm::vec3> directions;
     std::vector<std::uint8_t> hidden;
+    std::uint64_t met_rays = 0; ///< traced by incoming_radiance.h
 };
 
 /// What lights send to a viewer by way of a surface.
@@ -92,7 +94,7 @@ class SurfaceShading {
     /// which have the area mean of the patches that meet there.
     std::vector<glm::vec3> light_;
     PatchGradients gradients_;
-    std::vector<std::uint32_t> corner_; ///< per position, counted from the first: the same for all at one place
+    SmoothCorners corners_;
 };
 
 } // namespace kokage

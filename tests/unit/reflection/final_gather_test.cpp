@@ -1,52 +1,12 @@
-#include "common/environment/analytic_sky.h"
+#include "common/environment/lat_long.h"
 #include "common/services/parallel.h"
-#include "reflection/path_traced_picture.h"
-#include "tests/unit/reflection/picture_scenes.h"
+#include "tests/unit/reflection/half_hidden_leaf.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
 
 namespace kokage::test {
 namespace {
-
-Progress quiet;
-
-PictureOptions without_ground(int width, int height, int samples) {
-    PictureOptions options = small_picture(width, height, samples);
-    options.ground = PictureGround::none;
-    return options;
-}
-
-/// A leaf whose left half lies close under a black one. A camera above sees
-/// its right half alone, and that is in the open but for what the black one hides at its side.
-struct HalfHiddenLeaf {
-    PatchScene patches;
-    ShadedScene scene;
-    Environment sky = constant_environment(glm::vec3(1, 2, 3));
-    Camera camera = camera_at({0.5f, 6, 0}, {0.5f, 0, 0}, 0.12f);
-
-    explicit HalfHiddenLeaf(const Gloss& gloss = {}) {
-        patches.optics = {{glm::vec3(0.4f), glm::vec3(0.f)}, {glm::vec3(0.f), glm::vec3(0.f)}};
-        add_rectangle(patches, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
-        add_rectangle(patches, {-1, 0.1f, 1}, {1, 0, 0}, {0, 0, -2}, 1);
-        scene = evenly_shaded(patches, glm::vec3(0.f));
-        // In the mean over the leaf: half of it is as good as black.
-        scene.indirect_front[0] = scene.radiance_front[0] = 0.2f * glm::vec3(1, 2, 3);
-        scene.looks.resize(1);
-        scene.looks[0].gloss = gloss;
-        scene.triangle_look.assign(patches.triangles.size(), 0);
-    }
-
-    Picture solved(int gather_rays, const PictureOptions& base = without_ground(32, 32, 8)) const {
-        PictureOptions options = base;
-        options.gather_rays = gather_rays;
-        return render_picture(scene, RayQueries(patches), sky, camera, options, quiet);
-    }
-    Image traced(int samples) const {
-        return render_path_traced(scene, RayQueries(patches), sky, camera, without_ground(32, 32, samples), quiet)
-            .radiance;
-    }
-};
 
 double mean_of(const Image& image) {
     double sum = 0;
@@ -71,9 +31,51 @@ TEST(FinalGather, GivesFlatPatchesTheLightOfTheirLobes) {
     const Picture gathered = leaf.solved(8, small);
     PictureOptions paths = small;
     paths.samples = 1024;
-    const double truth =
-        mean_of(render_path_traced(leaf.scene, RayQueries(leaf.patches), leaf.sky, leaf.camera, paths, quiet).radiance);
+    const double truth = mean_of(
+        render_path_traced(leaf.scene, RayQueries(leaf.patches), leaf.sky, leaf.camera, paths, silent_progress())
+            .radiance);
     EXPECT_NEAR(mean_of(gathered.radiance) / truth, 1, 0.02);
+}
+
+/// The mean of a column range of a picture.
+double mean_of_columns(const Image& image, int begin, int end) {
+    double sum = 0;
+    for (int y = 0; y < image.height; ++y)
+        for (int x = begin; x < end; ++x)
+            sum += double(image.at(x, y)[0] + image.at(x, y)[1] + image.at(x, y)[2]);
+    return sum / (3. * (end - begin) * image.height);
+}
+
+TEST(FinalGather, GivesBentLeavesNoCommonLobe) {
+    // A glossy leaf of four pleats, below a sky that is bright on one side alone: no slope would do.
+    PatchScene patches;
+    patches.optics = {{glm::vec3(0.f), glm::vec3(0.f)}};
+    std::vector<glm::vec3> corners;
+    for (int k = 0; k < 4; ++k) {
+        const glm::vec3 a(0.5f * float(k) - 1, k % 2 ? 0 : 0.25f, 1), b(a.x + 0.5f, 0.25f - a.y, 1), along(0, 0, -2);
+        corners.insert(corners.end(), {a, b, b + along, a, b + along, a + along});
+    }
+    add_leaf(patches, corners);
+    ShadedScene scene = evenly_shaded(patches, glm::vec3(0.f));
+    scene.looks.resize(1);
+    scene.looks[0].gloss.normal_reflectance = glm::vec3(0.5f);
+    scene.looks[0].gloss.roughness = 0.3f;
+    scene.triangle_look.assign(patches.triangles.size(), 0);
+    Environment sky;
+    sky.remainder = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            std::fill_n(sky.remainder.at(x, y), 3, float(1.1 + pixel_direction(x, y, 64, 32).x));
+    PictureOptions options = without_ground(16, 16, 16);
+    Camera camera = camera_at({0, 6, 0}, {0, 0.125f, 0}, 0.32f);
+    camera.up = {0, 0, -1};
+    const RayQueries queries(patches);
+    options.gather_rays = 4;
+    const Image gathered = render_picture(scene, queries, sky, camera, options, silent_progress()).radiance;
+    options.samples = 256;
+    const Image truth = render_path_traced(scene, queries, sky, camera, options, silent_progress()).radiance;
+    for (const int first : {0, 4, 8, 12})
+        EXPECT_NEAR(mean_of_columns(gathered, first, first + 4) / mean_of_columns(truth, first, first + 4), 1, 0.03);
 }
 
 TEST(FinalGather, ChangesNothingWhereSolvedLightIsRight) {
@@ -85,7 +87,7 @@ TEST(FinalGather, ChangesNothingWhereSolvedLightIsRight) {
     PictureOptions options = without_ground(16, 16, 8);
     options.gather_rays = 4;
     const Picture picture = render_picture(scene, RayQueries(patches), constant_environment(glm::vec3(1.f)),
-                                           camera_at({0, 6, 0}, {0, 0, 0}, 0.2f), options, quiet);
+                                           camera_at({0, 6, 0}, {0, 0, 0}, 0.2f), options, silent_progress());
     for (const float value : picture.radiance.pixels)
         EXPECT_NEAR(value, 0.6f, 1e-4f);
 }
@@ -103,7 +105,8 @@ TEST(FinalGather, GathersTheWholeOfALargePatch) {
     const double gathered = mean_of(leaf.solved(8, tall).radiance);
     tall.samples = 64;
     const double truth =
-        mean_of(render_path_traced(leaf.scene, RayQueries(leaf.patches), leaf.sky, leaf.camera, tall, quiet).radiance);
+        mean_of(render_path_traced(leaf.scene, RayQueries(leaf.patches), leaf.sky, leaf.camera, tall, silent_progress())
+                    .radiance);
     EXPECT_NEAR(gathered / truth, 1, 0.02);
 }
 
@@ -154,16 +157,34 @@ TEST(FinalGather, IsSkippedWithoutShadowsPerPixelAndSaysSo) {
     EXPECT_FALSE(has(plain));
 }
 
+std::uint64_t rays_of(const Picture& picture) {
+    for (const WorkReport::Count& count : picture.report.counts)
+        if (count.name == "gathering rays")
+            return count.value;
+    return 0;
+}
+
 TEST(FinalGather, StopsWhenCornersAndPatchesHaveEnough) {
     const HalfHiddenLeaf leaf;
-    const auto rays = [&](int gather_rays) {
-        for (const WorkReport::Count& count : leaf.solved(gather_rays).report.counts)
-            if (count.name == "gathering rays")
-                return count.value;
-        return std::uint64_t(0);
-    };
-    EXPECT_EQ(rays(1), 32u * 32u);
-    EXPECT_EQ(rays(8), rays(1)); // one patch of a thousand pixels
+    EXPECT_EQ(rays_of(leaf.solved(1)), 32u * 32u);
+    EXPECT_EQ(rays_of(leaf.solved(8)), 32u * 32u); // one patch of a thousand pixels
+}
+
+TEST(FinalGather, CountsRaysThatWereTraced) {
+    HalfHiddenLeaf leaf;
+    leaf.camera = camera_at({0, 6, 0}, {0, 0, 0}, 0.12f); // sees the black cover on the left
+    const std::uint64_t rays = rays_of(leaf.solved(1));
+    EXPECT_GT(rays, 32u * 14u);
+    EXPECT_LT(rays, 32u * 18u);
+    // A lobe has a ray of its own, but not below the horizon.
+    Gloss gloss;
+    gloss.normal_reflectance = glm::vec3(0.04f);
+    gloss.roughness = 1;
+    HalfHiddenLeaf glossy(gloss);
+    glossy.patches.optics[0].reflectance = glm::vec3(0.f);
+    EXPECT_GT(rays_of(glossy.solved(1)), 32u * 26u);
+    glossy.camera = camera_at({2, 0.4f, 0}, {0.5f, 0, 0}, 0.12f);
+    EXPECT_LT(rays_of(glossy.solved(1)), 32u * 26u);
 }
 
 } // namespace

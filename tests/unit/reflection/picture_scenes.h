@@ -40,6 +40,12 @@ inline PictureOptions small_picture(int width, int height, int samples = 16) {
     return options;
 }
 
+inline PictureOptions without_ground(int width, int height, int samples) {
+    PictureOptions options = small_picture(width, height, samples);
+    options.ground = PictureGround::none;
+    return options;
+}
+
 inline glm::vec3 pixel(const Image& image, int x, int y) {
     return {image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]};
 }

@@ -25,12 +25,6 @@ Camera close_camera() {
     return camera_at({0.3f, 0.6f, 0.9f}, {0, 0.5f, 0}, 0.2f);
 }
 
-PictureOptions without_ground(int size, int samples) {
-    PictureOptions options = small_picture(size, size, samples);
-    options.ground = PictureGround::none;
-    return options;
-}
-
 Picture fast(const BarkTube& tube, const Environment& environment, const Camera& camera,
              const PictureOptions& options) {
     return render_picture(tube.scene, RayQueries(tube.patches), environment, camera, options, silent_progress());
@@ -63,7 +57,7 @@ TEST_P(ReliefPictureTruth, AgreesWithADisplacedMeshAndTheRendererWithIt) {
     const Environment environment = sky_over_dim_ground(GetParam());
     const BarkTube tube(fine_trunk(), environment, 0.02f);
     const RayQueries queries(tube.patches);
-    const PictureOptions options = without_ground(20, 400);
+    const PictureOptions options = without_ground(20, 20, 400);
     const Image truth =
         render_path_traced(tube.scene, queries, environment, close_camera(), options, silent_progress()).radiance;
 
@@ -71,7 +65,7 @@ TEST_P(ReliefPictureTruth, AgreesWithADisplacedMeshAndTheRendererWithIt) {
     const ShadedScene unlit = evenly_shaded(mesh, glm::vec3(0.f));
     const Image twin =
         render_path_traced(unlit, RayQueries(mesh), environment, close_camera(), options, silent_progress()).radiance;
-    const Image quick = fast(tube, environment, close_camera(), without_ground(20, 64)).radiance;
+    const Image quick = fast(tube, environment, close_camera(), without_ground(20, 20, 64)).radiance;
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(mean_of(truth)[c] / mean_of(twin)[c], 1, 0.015);
         EXPECT_NEAR(mean_of(quick)[c] / mean_of(truth)[c], 1, 0.02);
@@ -89,9 +83,9 @@ TEST(ReliefPicture, ReliefBelowAQuarterPixelIsNotMadeAndChangesNoBit) {
     BarkTube tube(fine_trunk(), environment, 0.02f);
     const Camera far = camera_at({30, 0.6f, 90}, {0, 0.5f, 0}, 0.02f);
     // 0.02 m at 95 m, a pixel of 0.02/20 radians: 0.21 pixels
-    const Picture with = fast(tube, environment, far, without_ground(20, 4));
+    const Picture with = fast(tube, environment, far, without_ground(20, 20, 4));
     tube.scene.looks[0].relief = {};
-    const Picture without = fast(tube, environment, far, without_ground(20, 4));
+    const Picture without = fast(tube, environment, far, without_ground(20, 20, 4));
     EXPECT_EQ(with.radiance.pixels, without.radiance.pixels);
     const auto skipped = [](const Picture& picture) {
         return std::find_if(picture.report.skips.begin(), picture.report.skips.end(),
@@ -108,7 +102,7 @@ TEST(ReliefPicture, ThinReliefIsTracedInFullIfAsked) {
     const Environment environment = sky_over_dim_ground(3);
     const BarkTube tube(fine_trunk(), environment, 0.02f);
     const Camera far = camera_at({30, 0.6f, 90}, {0, 0.5f, 0}, 0.02f); // 0.21 pixels
-    PictureOptions options = without_ground(20, 16);
+    PictureOptions options = without_ground(20, 20, 16);
     const Picture without = fast(tube, environment, far, options);
     options.skips.thin_relief = false;
     const Picture with = fast(tube, environment, far, options);
@@ -121,7 +115,8 @@ TEST(ReliefPicture, ThinReliefIsTracedInFullIfAsked) {
 TEST(ReliefPicture, ReliefOutOfViewIsNotMade) {
     const Environment environment = sky_over_dim_ground(3);
     const BarkTube tube(fine_trunk(), environment, 0.02f);
-    const Picture picture = fast(tube, environment, camera_at({0, 0.5f, 2}, {0, 0.5f, 4}, 0.5f), without_ground(8, 1));
+    const Picture picture =
+        fast(tube, environment, camera_at({0, 0.5f, 2}, {0, 0.5f, 4}, 0.5f), without_ground(8, 8, 1));
     ASSERT_FALSE(picture.report.skips.empty());
     EXPECT_TRUE(std::any_of(picture.report.skips.begin(), picture.report.skips.end(), [](const WorkReport::Skip& skip) {
         return skip.what == "relief" && skip.why.find("in view") != std::string::npos;
@@ -132,9 +127,9 @@ TEST(ReliefPicture, EvenHeightsLookLikeTheMesh) {
     const Environment environment = sky_over_dim_ground(3);
     BarkTube tube(fine_trunk(), environment, 0.02f);
     std::fill(tube.field->depths.begin(), tube.field->depths.end(), 0.f);
-    const Image even = fast(tube, environment, close_camera(), without_ground(20, 16)).radiance;
+    const Image even = fast(tube, environment, close_camera(), without_ground(20, 20, 16)).radiance;
     tube.scene.looks[0].relief = {};
-    const Image mesh = fast(tube, environment, close_camera(), without_ground(20, 16)).radiance;
+    const Image mesh = fast(tube, environment, close_camera(), without_ground(20, 20, 16)).radiance;
     EXPECT_LT(difference(even, mesh), 1e-3);
 }
 
@@ -144,9 +139,9 @@ TEST(ReliefPicture, FadesOutWithoutAStep) {
     BarkTube tube(fine_trunk(), environment, 0.02f);
     const float pixel = 0.2f / 16, distance = 0.02f / (0.275f * pixel); // strength 0.7 %
     const Camera camera = camera_at({0, 0.5f, distance + 0.2f}, {0, 0.5f, 0}, 0.2f);
-    const Image with = fast(tube, environment, camera, without_ground(16, 64)).radiance;
+    const Image with = fast(tube, environment, camera, without_ground(16, 16, 64)).radiance;
     tube.scene.looks[0].relief = {};
-    const Image without = fast(tube, environment, camera, without_ground(16, 64)).radiance;
+    const Image without = fast(tube, environment, camera, without_ground(16, 16, 64)).radiance;
     EXPECT_NE(with.pixels, without.pixels);
     EXPECT_LT(difference(with, without), 0.01);
 }
@@ -157,7 +152,7 @@ TEST(ReliefPicture, SameBitsForAnyNumberOfThreads) {
     const RayQueries queries(tube.patches);
     const auto draw = [&](int threads) {
         set_thread_count(threads);
-        const PictureOptions options = without_ground(24, 3);
+        const PictureOptions options = without_ground(24, 24, 3);
         std::vector<float> pixels =
             render_picture(tube.scene, queries, environment, close_camera(), options, silent_progress())
                 .radiance.pixels;
@@ -176,11 +171,11 @@ TEST(ReliefPicture, AnyDepthIsFinite) {
     for (const float depth : {0.f, 1e-9f, 0.5f, 100.f, 1e30f}) {
         const BarkTube tube(bent_branch(), environment, depth);
         const Camera camera = camera_at({0.3f, 0.3f, 1.5f}, {0.2f, 0.3f, 0}, 0.5f);
-        const Picture picture = fast(tube, environment, camera, without_ground(24, 2));
+        const Picture picture = fast(tube, environment, camera, without_ground(24, 24, 2));
         EXPECT_TRUE(is_finite(picture.radiance)) << depth;
         const RayQueries queries(tube.patches);
         EXPECT_TRUE(is_finite(
-            render_path_traced(tube.scene, queries, environment, camera, without_ground(24, 2), silent_progress())
+            render_path_traced(tube.scene, queries, environment, camera, without_ground(24, 24, 2), silent_progress())
                 .radiance))
             << depth;
     }
@@ -208,7 +203,7 @@ TEST(ReliefPicture, WhatStandsInFrontOfReliefIsSeen) {
          {&tube.scene.indirect_front, &tube.scene.indirect_back, &tube.scene.radiance_front, &tube.scene.radiance_back})
         values->emplace_back(0.f);
     const Image seen =
-        fast(tube, environment, camera_at({0, 0.5f, 1}, {0, 0.5f, 0}, 0.2f), without_ground(16, 4)).radiance;
+        fast(tube, environment, camera_at({0, 0.5f, 1}, {0, 0.5f, 0}, 0.2f), without_ground(16, 16, 4)).radiance;
     for (int x = 0; x < 16; ++x) {
         EXPECT_EQ(seen.at(x, 12)[0], 0) << x;
         EXPECT_GT(seen.at(x, 3)[0], 0) << x;
@@ -218,7 +213,7 @@ TEST(ReliefPicture, WhatStandsInFrontOfReliefIsSeen) {
 TEST(ReliefPicture, BadReliefIsRefused) {
     const Environment environment = sky_over_dim_ground(0);
     BarkTube tube(fine_trunk(), environment, 0.02f);
-    const auto draw = [&] { fast(tube, environment, close_camera(), without_ground(4, 1)); };
+    const auto draw = [&] { fast(tube, environment, close_camera(), without_ground(4, 4, 1)); };
     tube.scene.looks[0].relief.depth_m = -1;
     EXPECT_THROW(draw(), InputError);
     tube.scene.looks[0].relief.depth_m = std::nanf("");

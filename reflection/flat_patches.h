@@ -1,0 +1,14 @@
+#pragma once
+// Which patches are flat. Private to reflection.
+#include "common/scene/patch_scene.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace kokage {
+
+/// 1 for patches all but a hundredth of whose area faces one way, within some 3 degrees. Folded and rounded leaves, and
+/// leaves of crossed cards, are none.
+std::vector<std::uint8_t> flat_patches(const PatchScene& scene);
+
+} // namespace kokage

@@ -1,0 +1,68 @@
+#pragma once
+// What rays gathered, summed up over what the camera sees, and what follows for a patch's light. Private to reflection.
+#include "reflection/gloss_shading.h"
+#include "reflection/surface_shading.h"
+#include "reflection/values_of_some.h"
+
+#include <optional>
+#include <vector>
+
+namespace kokage {
+
+/// What one point that is seen says of its patch.
+struct GatheredSample {
+    LightPlaces places;
+    glm::vec3 gathered{0.f}, solved{0.f}; ///< light that its ray brought, and that was solved
+    std::uint32_t prior = 0;              ///< look and side, whose mean correction a patch of few rays takes
+    bool is_flat = false;                 ///< its light may slope over the patch
+    std::optional<std::uint32_t> lobe;    ///< GlossShading::lobe_of_patch
+    glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
+    glm::vec3 point{0.f}, origin{0.f}; ///< where the rays began, and one corner of its patch
+};
+
+class GatheredSums {
+  public:
+    /// Of so many places of light, looks and lobes.
+    GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes);
+
+    void add(const GatheredSample& sample);
+    /// To be called when every pixel had one more ray.
+    void end_pass();
+    std::uint64_t samples() const { return samples_; }
+    /// As it was at the end of the last pass, so that all of a patch is gathered or nothing.
+    bool enough(const LightPlaces& places) const;
+
+    void give_light(SurfaceShading& surfaces) const;
+    /// All but those of large patches.
+    void give_lobes(GlossShading& gloss) const;
+
+  private:
+    /// In single precision where there are many.
+    template <typename Vector>
+    struct SumOf {
+        Vector gathered{0}, solved{0};
+        typename Vector::value_type weight = 0;
+        std::uint32_t prior = 0;
+        bool has_enough = false;
+        bool is_large = false; ///< lobes: has enough after the first pass
+        void add(float w, const glm::vec3& of_ray, const glm::vec3& of_solution, std::uint32_t of_prior) {
+            gathered += Vector(w * of_ray);
+            solved += Vector(w * of_solution);
+            weight += w;
+            prior = of_prior;
+        }
+    };
+    using Sum = SumOf<glm::vec3>;
+    using LookSum = SumOf<glm::dvec3>;
+
+    static glm::dvec3 ratio(const LookSum& sum);
+    static glm::vec3 corrected(const glm::vec3& light, const Sum& sum, const glm::dvec3& ratio_of_look);
+
+    ValuesOfSome<Sum> of_places_, of_lobes_;
+    ValuesOfSome<PatchMoments> moments_of_places_, moments_of_lobes_;
+    std::vector<LookSum> of_looks_, lobes_of_looks_; ///< front and back of each look
+    std::uint64_t samples_ = 0;
+    int passes_ = 0;
+};
+
+} // namespace kokage
