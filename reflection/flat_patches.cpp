@@ -4,7 +4,8 @@
 namespace kokage {
 namespace {
 
-constexpr double kLeastCosine = 0.9986;
+/// Of 20 degrees. With 3, an oak's leaves close by were 3.5 % from the truth in place of 3.1 %, for 1.4 times the time.
+constexpr double kLeastCosine = 0.94;
 constexpr double kMostAside = 0.01; ///< of the area: slivers face anywhere
 
 /// Twice the area long.

@@ -31,8 +31,8 @@ std::vector<glm::vec3> folded(float angle, float size = 1, const glm::vec3& at =
 
 TEST(FlatPatches, TellFlatFromBentLeaves) {
     EXPECT_TRUE(is_flat(folded(0)));
-    EXPECT_TRUE(is_flat(folded(0.01f)));
-    EXPECT_FALSE(is_flat(folded(0.1f)));
+    EXPECT_TRUE(is_flat(folded(0.25f)));
+    EXPECT_FALSE(is_flat(folded(0.4f)));
     EXPECT_FALSE(is_flat(folded(1.f)));
     EXPECT_TRUE(is_flat(folded(0, 0.01f, {300, 20, 300}))); // as far as digits go
     EXPECT_FALSE(is_flat(rectangle({0, 0, 0}, {1, 0, 0}, {0, 0, -1}), rectangle({0, 0, 0}, {0, 1, 0}, {0, 0, -1})));
