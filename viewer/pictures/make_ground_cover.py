@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Makes what lies and grows on the ground of the gallery's scenes: scenes/meadow.glb, fallen_leaves.glb and path.obj.
+"""Makes what lies and grows on the ground of the gallery's scenes: scenes/meadow.glb, fallen_leaves.glb, path.obj and backdrop.obj.
 
     viewer/pictures/make_ground_cover.py
 
@@ -178,8 +178,28 @@ def path_of_gravel(path):
     path.write_text("\n".join(lines) + "\n")
 
 
+def studio_backdrop(path):
+    """A photographer's backdrop: a floor that rises in a curve into a wall, seamless, 60 m wide. The floor is at y = 0, and ends behind a camera 30 m away."""
+    floor_end, bend_at, radius, top = 34.0, -6.0, 5.0, 24.0
+    profile = [(z, 0.0) for z in (floor_end, 20.0, 10.0, 5.0, 0.0, -3.0)]
+    for step in range(13):
+        angle = 0.5 * math.pi * step / 12
+        profile.append((bend_at - radius * math.sin(angle), radius * (1 - math.cos(angle))))
+    profile += [(bend_at - radius, 10.0), (bend_at - radius, top)]
+    columns = [-30 + 6 * column for column in range(11)]
+    lines = ["# Made by make_ground_cover.py", "o backdrop"]
+    for z, y in profile:
+        lines += ["v %.3f %.4f %.4f" % (x, y, z) for x in columns]
+    for row in range(len(profile) - 1):
+        for column in range(len(columns) - 1):
+            a = row * len(columns) + column + 1
+            lines.append("f %d %d %d %d" % (a, a + 1, a + 1 + len(columns), a + len(columns)))
+    path.write_text("\n".join(lines) + "\n")
+
+
 if __name__ == "__main__":
     scenes = pathlib.Path(__file__).parent / "scenes"
     meadow(scenes / "meadow.glb")
     fallen_leaves(scenes / "fallen_leaves.glb")
     path_of_gravel(scenes / "path.obj")
+    studio_backdrop(scenes / "backdrop.obj")
