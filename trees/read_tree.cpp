@@ -27,6 +27,10 @@ void scale_tree(Tree& tree, double scale) {
             position = scaled(position);
     for (Leaf& leaf : tree.leaves)
         leaf.centre = scaled(leaf.centre);
+    for (TreeMaterial& material : tree.materials) {
+        material.height_depth_m = float(double(material.height_depth_m) * scale);
+        material.height_tile_m = float(double(material.height_tile_m) * scale);
+    }
 }
 
 /// Whether a mesh carries the attributes that write_tree() gives shaded trees (another program may have kept them).

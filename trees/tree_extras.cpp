@@ -14,6 +14,7 @@ namespace kokage {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint64_t kMostHeights = 1u << 15; ///< along a side of an image
 
 /// A running hash of arrays' bits.
 class Fingerprint {
@@ -140,6 +141,12 @@ class ExtrasReader {
         const nlohmann::json& value = member(object, name);
         good = good && value.is_boolean();
         return good && value.get<bool>();
+    }
+    /// Finite.
+    float number(const nlohmann::json& object, const char* name) {
+        const nlohmann::json& value = member(object, name);
+        good = good && value.is_number() && std::isfinite(value.get<float>());
+        return good ? value.get<float>() : 0.f;
     }
     std::string text(const nlohmann::json& object, const char* name) {
         const nlohmann::json& value = member(object, name);
@@ -302,8 +309,44 @@ bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const MeshScen
     return reader.good;
 }
 
+/// Heights of bark: images of one channel, which materials share.
+std::vector<std::shared_ptr<const Image>> read_heights(ExtrasReader& reader, const nlohmann::json& extras) {
+    std::vector<std::shared_ptr<const Image>> images;
+    for (const nlohmann::json& entry : reader.list(extras, "heights")) {
+        const std::uint64_t width = reader.count(entry, "width"), height = reader.count(entry, "height");
+        reader.good = reader.good && width > 0 && height > 0 && width <= kMostHeights && height <= kMostHeights;
+        if (!reader.good)
+            return {};
+        auto image = std::make_shared<Image>();
+        image->width = int(width);
+        image->height = int(height);
+        image->channels = 1;
+        image->pixels = reader.floats(entry, "values", width * height);
+        for (const float value : image->pixels)
+            reader.good = reader.good && std::isfinite(value);
+        images.push_back(std::move(image));
+    }
+    return images;
+}
+
+void read_relief(ExtrasReader& reader, const nlohmann::json& entry,
+                 const std::vector<std::shared_ptr<const Image>>& heights, TreeMaterial& material) {
+    const auto relief = entry.is_object() ? entry.find("relief") : entry.end();
+    if (!entry.is_object() || relief == entry.end())
+        return;
+    const std::uint64_t image = reader.count(*relief, "heights");
+    const float depth = reader.number(*relief, "depth"), tile = reader.number(*relief, "tile");
+    reader.good = reader.good && image < heights.size() && depth >= 0 && tile >= 0;
+    if (!reader.good)
+        return;
+    material.height_texture = heights[image];
+    material.height_depth_m = depth;
+    material.height_tile_m = tile;
+}
+
 bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const MeshScene& scene, Tree& tree) {
     const nlohmann::json& materials = reader.list(extras, "materials");
+    const std::vector<std::shared_ptr<const Image>> heights = read_heights(reader, extras);
     if (!reader.good || materials.size() >= scene.materials.size() + 1)
         return false;
     std::vector<std::string> ignored;
@@ -320,6 +363,7 @@ bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const Me
             material.diffuse_transmission = number(0);
             material.diffuse_transmission_color = {number(1), number(2), number(3)};
         }
+        read_relief(reader, materials[m], heights, material);
         tree.materials.push_back(std::move(material));
     }
     return reader.good;
@@ -362,6 +406,14 @@ nlohmann::json write_extras(GltfWriter& writer, const Tree& tree, const std::vec
                         {"centre", data(a.leaf_centre, "centre of leaf")},
                         {"branch", data(a.leaf_branch, "branch of leaf")}};
     extras["bark_patches"] = tree.bark_patch_count;
+    extras["heights"] = nlohmann::json::array();
+    std::map<std::shared_ptr<const Image>, std::size_t> heights;
+    for (const TreeMaterial& material : tree.materials)
+        if (const auto& image = material.height_texture;
+            image && !image->empty() && heights.try_emplace(image, heights.size()).second)
+            extras["heights"].push_back({{"width", image->width},
+                                         {"height", image->height},
+                                         {"values", data(image->pixels, "height of bark")}});
     extras["materials"] = nlohmann::json::array();
     for (const TreeMaterial& material : tree.materials) {
         nlohmann::json entry = {{"double_sided", material.double_sided},
@@ -369,6 +421,9 @@ nlohmann::json write_extras(GltfWriter& writer, const Tree& tree, const std::vec
         const glm::vec3& color = material.diffuse_transmission_color;
         if (material.diffuse_transmission >= 0)
             entry["diffuse_transmission"] = {material.diffuse_transmission, color.r, color.g, color.b};
+        if (const auto image = heights.find(material.height_texture); image != heights.end())
+            entry["relief"] = {
+                {"heights", image->second}, {"depth", material.height_depth_m}, {"tile", material.height_tile_m}};
         extras["materials"].push_back(std::move(entry));
     }
     extras["parts"] = nlohmann::json::array();

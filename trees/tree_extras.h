@@ -9,7 +9,9 @@
 //                     nodes: accessor VEC4, position and radius
 //   leaves            count; centre: accessor VEC3; branch: accessor (2^32 - 1 = unknown)
 //   bark_patches      count
-//   materials         [{double_sided, has_color, diffuse_transmission: [factor, r, g, b]}], as long as Tree::materials
+//   heights           [{width, height, values: accessor}], images of bark's heights, which materials share
+//   materials         [{double_sided, has_color, diffuse_transmission: [factor, r, g, b],
+//                     relief: {heights: number of the image, depth, tile}}], as long as Tree::materials
 //   parts             [{kind, material, mesh, primitive, vertices, triangles, duplicates; triangle_patch, duplicate_of:
 //                     accessors}]
 //                     the vertices beyond `vertices` repeat those that duplicate_of names, where a patch's attributes

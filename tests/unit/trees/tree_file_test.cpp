@@ -8,6 +8,7 @@
 #include "tests/support/tree_files.h"
 #include "trees/patches.h"
 
+#include <algorithm>
 #include <gtest/gtest.h>
 #include <tiny_gltf.h>
 
@@ -74,6 +75,13 @@ void expect_same_tree(const Tree& a, const Tree& b) {
         EXPECT_EQ(x.alpha_texture ? x.alpha_cutoff : 0.f, x.alpha_texture ? y.alpha_cutoff : 0.f);
         expect_same_texture(x.base_color_texture, y.base_color_texture);
         expect_same_texture(x.alpha_texture, y.alpha_texture);
+        ASSERT_EQ(bool(x.height_texture), bool(y.height_texture));
+        if (x.height_texture) {
+            EXPECT_EQ(x.height_texture->width, y.height_texture->width);
+            EXPECT_TRUE(x.height_texture->pixels == y.height_texture->pixels);
+        }
+        EXPECT_EQ(x.height_depth_m, y.height_depth_m);
+        EXPECT_EQ(x.height_tile_m, y.height_tile_m);
     }
 }
 
@@ -104,6 +112,25 @@ Tree rich_tree() {
     material.diffuse_transmission = 0.3f;
     material.diffuse_transmission_color = {0.5f, 0.7f, 0.1f};
     return tree;
+}
+
+std::size_t with_heights(const Tree& tree) {
+    return std::size_t(std::count_if(tree.materials.begin(), tree.materials.end(),
+                                     [](const TreeMaterial& material) { return bool(material.height_texture); }));
+}
+
+TEST(TreeFile, BarksHeightsComeBackAndAreShared) {
+    TemporaryFolder folder;
+    Tree tree = small_oak(30);
+    ASSERT_GT(with_heights(tree), 0u);
+    TreeMaterial twin = tree.materials[tree.parts[0].material];
+    ASSERT_TRUE(twin.height_texture);
+    twin.height_depth_m *= 3;
+    tree.materials.push_back(twin);
+    write_tree(folder / "tree.glb", tree);
+    const Tree found = read_tree(folder / "tree.glb");
+    expect_same_tree(tree, found);
+    EXPECT_EQ(found.materials.back().height_texture, found.materials[tree.parts[0].material].height_texture);
 }
 
 TEST(TreeFile, APlainTreeComesBackBitForBit) {
@@ -274,6 +301,10 @@ TEST(TreeFile, ScaleAppliesToOwnFiles) {
     EXPECT_EQ(scaled.leaves[3].centre, 0.5f * tree.leaves[3].centre);
     EXPECT_EQ(scaled.skeleton.branches[1].nodes[0].radius_m, 0.5f * tree.skeleton.branches[1].nodes[0].radius_m);
     EXPECT_TRUE(scaled.branching_known);
+    const std::uint32_t bark = tree.parts[0].material;
+    EXPECT_GT(tree.materials[bark].height_depth_m, 0);
+    EXPECT_EQ(scaled.materials[bark].height_depth_m, 0.5f * tree.materials[bark].height_depth_m);
+    EXPECT_EQ(scaled.materials[bark].height_tile_m, 0.5f * tree.materials[bark].height_tile_m);
 }
 
 TEST(TreeFile, AnEditedFileIsReadLikeAnybodys) {
