@@ -161,4 +161,18 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     report.counts.push_back({"gathering rays", traced});
 }
 
+double gathering_bytes(const PictureOptions& options, double patches, double corners, int threads) {
+    const double rays = double(options.width) * double(options.height) * gather_rays_of(options);
+    if (rays == 0)
+        return 0;
+    // Few patches show the camera both of their sides.
+    const GatheredSums::Counts counts{patches, corners, std::min(patches, rays), std::min(corners, 3 * rays)};
+    const double row = double(options.width), row_of_hits = row * double(sizeof(CameraHit) + sizeof(PathNumbers)),
+                 row_of_samples = row * double(sizeof(GatheredSample));
+    constexpr double kGrown = 2; // vectors that are filled without being told how far
+    return GatheredSums::most_bytes(counts) + PatchGradients::most_bytes(2 * (patches + corners), counts.seen_patches) +
+           GlossShading::most_lobe_bytes(patches, counts.seen_patches) + patches +
+           kGrown * (kRowsAtOnce * row_of_samples + threads * row_of_hits);
+}
+
 } // namespace kokage

@@ -19,4 +19,8 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
                        const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
                        SurfaceShading& surfaces, GlossShading& gloss, Progress& progress, WorkReport& report);
 
+/// Bytes that this takes at most, of a scene of so many patches and corners of smooth surfaces, with what pictures keep
+/// of it; 0 without gathering rays.
+double gathering_bytes(const PictureOptions& options, double patches, double corners, int threads);
+
 } // namespace kokage

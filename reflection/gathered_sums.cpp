@@ -43,6 +43,20 @@ void GatheredSums::end_pass() {
             sum.is_large = sum.weight >= kEnough;
 }
 
+std::size_t GatheredSums::bytes() const {
+    return of_places_.bytes() + of_lobes_.bytes() + moments_of_places_.bytes() + moments_of_lobes_.bytes() +
+           (of_looks_.capacity() + lobes_of_looks_.capacity()) * sizeof(LookSum);
+}
+
+double GatheredSums::most_bytes(const Counts& counts) {
+    const double places = 2 * (counts.patches + counts.corners), lobes = 2 * counts.patches;
+    using Sums = ValuesOfSome<Sum>;
+    using Moments = ValuesOfSome<PatchMoments>;
+    return Sums::most_bytes(places, counts.seen_patches + counts.seen_corners) +
+           Sums::most_bytes(lobes, counts.seen_patches) + Moments::most_bytes(places, counts.seen_patches) +
+           Moments::most_bytes(lobes, counts.seen_patches);
+}
+
 bool GatheredSums::enough(const LightPlaces& places) const {
     for (std::size_t k = 0; k < 3; ++k)
         if (places.weights[k] > kLeastWeight)

@@ -40,6 +40,10 @@ class GlossShading {
     void set_light_of_patch(std::uint32_t lobe, const glm::vec3& light, const PatchGradient& gradient) {
         of_patches_.at(lobe) = {light, gradient};
     }
+    /// Bytes of such light, where so many patches have it.
+    static double most_lobe_bytes(double patches, double known) {
+        return ValuesOfSome<LobeLight>::most_bytes(2 * patches, known);
+    }
 
   private:
     static glm::vec3 mirrored(const SurfacePoint& at, const glm::vec3& direction);

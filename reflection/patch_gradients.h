@@ -40,7 +40,7 @@ class PatchGradients {
         const PatchGradient* gradient = place < gradients_.places() ? gradients_.find(place) : nullptr;
         return gradient ? gradient->at(point) : 1.f;
     }
-    std::size_t bytes() const { return gradients_.bytes(); }
+    static double most_bytes(double places, double set) { return ValuesOfSome<PatchGradient>::most_bytes(places, set); }
 
   private:
     ValuesOfSome<PatchGradient> gradients_;

@@ -8,4 +8,8 @@ namespace kokage {
 /// which takes more than render_path_traced.
 double picture_bytes(const PictureOptions& options, int threads);
 
+/// Bytes that render_picture's light takes beside: of all patches, of the corners of bark and objects, and what is
+/// gathered where the camera looks.
+double light_bytes(const PictureOptions& options, const PatchScene& scene, int threads);
+
 } // namespace kokage

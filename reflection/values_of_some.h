@@ -39,6 +39,10 @@ class ValuesOfSome {
     std::size_t bytes() const {
         return number_.capacity() * sizeof(std::uint32_t) + values_.capacity() * sizeof(Value);
     }
+    /// The most that bytes() may be with so many values: room doubles when it is full.
+    static double most_bytes(double places, double values) {
+        return places * double(sizeof(std::uint32_t)) + 2 * values * double(sizeof(Value));
+    }
 
   private:
     std::vector<std::uint32_t> number_; ///< from 1; 0: none

@@ -13,7 +13,7 @@ namespace {
 Picture render_solved(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, WorkReport& report,
                       Progress& progress) {
     check_memory(estimated_transport_bytes(double(scene.patches.patches.size()), options.error) +
-                     estimated_picture_bytes(options.picture),
+                     estimated_picture_bytes(options.picture, scene.patches),
                  "the light of " + count_text(scene.patches.patches.size()) +
                      " patches at this error, with the picture,",
                  "ask for a larger error, fewer trees, fewer leaves, or a smaller picture");

@@ -28,6 +28,10 @@ double estimated_picture_bytes(const PictureOptions& options) {
     return picture_bytes(options, thread_count()) + pixels * shown;
 }
 
+double estimated_picture_bytes(const PictureOptions& options, const PatchScene& scene) {
+    return estimated_picture_bytes(options) + light_bytes(options, scene, thread_count());
+}
+
 void check_memory(double bytes, const std::string& what, const std::string& mend) {
     const double available = double(available_memory_bytes());
     if (bytes > available)

@@ -15,6 +15,8 @@ double estimated_geometry_bytes(double vertices, double triangles);
 double estimated_transport_bytes(double patches, double error);
 /// Bytes of a picture with its layers while it is drawn and written, by as many threads as may be used.
 double estimated_picture_bytes(const PictureOptions& options);
+/// The same of render_picture and a scene that is known.
+double estimated_picture_bytes(const PictureOptions& options, const PatchScene& scene);
 
 /// Throws InputError if `bytes` for `what` are not to be had; `mend` says what to reduce. Does nothing where the system
 /// doesn't tell.

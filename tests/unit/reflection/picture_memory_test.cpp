@@ -1,0 +1,101 @@
+#include "common/services/parallel.h"
+#include "reflection/gathered_sums.h"
+#include "reflection/picture_memory.h"
+#include "tests/unit/reflection/picture_scenes.h"
+
+#include <fstream>
+#include <gtest/gtest.h>
+#include <malloc.h>
+#include <optional>
+#include <sstream>
+#include <string>
+
+namespace kokage::test {
+namespace {
+
+/// Of this process' memory, in bytes; empty where the system doesn't tell.
+std::optional<double> memory(const std::string& name) {
+    std::ifstream status("/proc/self/status");
+    for (std::string line; std::getline(status, line);)
+        if (line.rfind(name + ":", 0) == 0)
+            return 1024 * std::stod(line.substr(name.size() + 1));
+    return std::nullopt;
+}
+
+/// From now on the peak is counted anew.
+bool forget_peak() {
+    malloc_trim(0);
+    std::ofstream file("/proc/self/clear_refs");
+    file << "5" << std::flush;
+    return bool(file);
+}
+
+/// A field of small leaves, all of them seen from above.
+PatchScene field_of_leaves(int side) {
+    PatchScene scene;
+    scene.optics = {{glm::vec3(0.4f), glm::vec3(0.f)}};
+    for (int row = 0; row < side; ++row)
+        for (int column = 0; column < side; ++column)
+            add_rectangle(scene, {column, 0, row + 1}, {0.9f, 0, 0}, {0, 0, -0.9f});
+    return scene;
+}
+
+TEST(PictureMemory, OfLightAndGatheringIsWhatALargeSceneTakes) {
+    constexpr int kSide = 350;
+    set_thread_count(2);
+    for (const float reflectance : {0.f, 0.04f}) { // matt, and with lobes
+        const PatchScene patches = field_of_leaves(kSide);
+        ShadedScene scene = evenly_shaded(patches, glm::vec3(0.4f));
+        scene.looks.resize(1);
+        scene.looks[0].gloss.normal_reflectance = glm::vec3(reflectance);
+        scene.looks[0].gloss.roughness = 0.6f;
+        scene.triangle_look.assign(patches.triangles.size(), 0);
+        const RayQueries queries(patches);
+        PictureOptions options = without_ground(700, 700, 1);
+        options.gather_rays = 1;
+        Camera camera = camera_at({0.5f * kSide, kSide, 0.5f * kSide}, {0.5f * kSide, 0, 0.5f * kSide}, 0.9273f);
+        const Environment sky = constant_environment(glm::vec3(1.f));
+        render_picture(scene, queries, sky, camera, without_ground(8, 8, 1), silent_progress()); // pools and tables
+        const bool can_measure = forget_peak();
+        const std::optional<double> before = memory("VmRSS");
+        render_picture(scene, queries, sky, camera, options, silent_progress());
+        const std::optional<double> peak = memory("VmHWM");
+        if (!can_measure || !before || !peak || !(*peak > *before))
+            GTEST_SKIP() << "skipped: the system does not tell of peaks of memory";
+        const double taken = *peak - *before, estimated = picture_bytes(options, 2) + light_bytes(options, patches, 2);
+        EXPECT_GT(estimated, 0.95 * taken);
+        EXPECT_LT(estimated, (reflectance > 0 ? 2 : 4.5) * taken);
+    }
+    set_thread_count(0);
+}
+
+TEST(PictureMemory, OfGatheringGrowsWithWhatIsSeen) {
+    constexpr std::uint32_t kPatches = 20000;
+    for (const std::uint32_t seen : {100u, 3000u, 20000u}) {
+        GatheredSums sums(2 * kPatches, 1, 2 * kPatches);
+        for (std::uint32_t k = 0; k < seen; ++k) {
+            GatheredSample sample;
+            sample.places.places.fill(k);
+            sample.is_flat = true;
+            sample.lobe = k;
+            sums.add(sample);
+        }
+        const double most = GatheredSums::most_bytes({kPatches, 0, double(seen), 0});
+        EXPECT_GT(most, double(sums.bytes()));
+        EXPECT_LT(most, 2.1 * double(sums.bytes()));
+    }
+}
+
+TEST(PictureMemory, OfLightHasCornersOfBark) {
+    PatchScene leaves = field_of_leaves(10), bark = leaves;
+    for (Patch& patch : bark.patches)
+        patch.kind = PatchKind::bark;
+    const PictureOptions options = small_picture(10, 10);
+    EXPECT_GT(light_bytes(options, bark, 1), light_bytes(options, leaves, 1) + 200 * 0.75 * 24);
+    PictureOptions gathering = options;
+    gathering.gather_rays.reset();
+    EXPECT_GT(light_bytes(gathering, leaves, 1), light_bytes(options, leaves, 1));
+}
+
+} // namespace
+} // namespace kokage::test
