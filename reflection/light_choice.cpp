@@ -91,7 +91,8 @@ void LightChoice::add_ray(std::size_t light, const glm::vec3& point, const Scatt
         const LightSample sample = draw(distant_[light], u);
         ray = {sample.direction, std::numeric_limits<float>::infinity(),
                weight * sample.irradiance_over_pdf * scattering.towards(sample.direction)};
-        if (scattering.is_glossy() && !is_wide_for(distant_[light].light, scattering.roughness))
+        if (scattering.is_glossy() &&
+            (scattering.mirrors_wide_lights || !is_wide_for(distant_[light].light, scattering.roughness)))
             ray.reflection = weight * sample.irradiance_over_pdf * scattering.mirrored_towards(sample.direction);
     } else {
         const PointLight& lamp = points_[light - distant_.size()];

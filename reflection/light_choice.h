@@ -17,6 +17,7 @@ struct Scattering {
     /// Gloss (gloss.h), K towards the viewer; 0: matt.
     glm::vec3 gloss{0.f}, mirrored{0.f};
     float roughness = 1;
+    bool mirrors_wide_lights = false; ///< else rays of the lobe find those (glossy_light.h)
 
     glm::vec3 towards(const glm::vec3& direction_to_light) const {
         const float cosine = glm::dot(normal, direction_to_light);
@@ -32,7 +33,7 @@ struct ShadowRay {
     glm::vec3 direction;
     float distance;     ///< infinite for distant lights
     glm::vec3 radiance; ///< scattered to the viewer if nothing is in between; divided by the probability of the choice
-    glm::vec3 reflection{0.f}; ///< the same of the gloss; 0 for lights that are wide for its lobe (glossy_light.h)
+    glm::vec3 reflection{0.f}; ///< the same of the gloss; 0 for lights that rays of its lobe find
 };
 
 /// Where in a pixel's set of samples we are, for stratification across the set.

@@ -140,6 +140,9 @@ void SurfacePoints::dress(SurfacePoint& at, const glm::vec3& direction) const {
         at.roughness = std::clamp(at.roughness, kLeastRoughness, 1.f);
         const glm::vec3 reflectance =
             glm::min(look->gloss.normal_reflectance + (at.texture - 1.f) * look->gloss.tinted_reflectance, 1.f);
+        for (std::size_t c = 0; c < 3; ++c)
+            if (look->gloss.normal_reflectance[c] > 0)
+                at.gloss_texture[c] = reflectance[c] / look->gloss.normal_reflectance[c];
         at.gloss = gloss_reflectance(reflectance, at.roughness, -glm::dot(at.normal, direction));
     }
 }

@@ -14,6 +14,7 @@ struct SurfacePoint {
     glm::vec3 texture{1.f};          ///< base colour here over its mean
     Optics optics;                   ///< here: the patch's times `texture`
     glm::vec3 gloss{0.f};            ///< K of gloss.h towards the viewer; 0: matt
+    glm::vec3 gloss_texture{1.f};    ///< gloss here over its mean: of metals, whose texture colours it
     float roughness = 1;
     std::uint32_t triangle = 0, patch = 0;
     glm::vec3 weights{0.f};              ///< of the triangle's corners

@@ -121,18 +121,19 @@ glm::vec3 SurfaceShading::met_radiance(const SurfacePoint& at, const glm::vec3& 
                                        ShadingScratch& scratch) const {
     if (!pixel_shadows_)
         return solved_radiance(at);
-    glm::vec3 light = at.front ? scene_.indirect_front[at.patch] : scene_.indirect_back[at.patch];
+    glm::vec3 light = at.texture * (at.front ? scene_.indirect_front[at.patch] : scene_.indirect_back[at.patch]);
     if (!scene_.gloss_front.empty())
-        light += at.front ? scene_.gloss_front[at.patch] : scene_.gloss_back[at.patch];
-    // A narrower lobe would show a light to one ray in a thousand.
+        light += at.gloss_texture * (at.front ? scene_.gloss_front[at.patch] : scene_.gloss_back[at.patch]);
+    // A narrower lobe would show a light to one ray in a thousand. No ray of the lobe finds wide lights from here.
     const Scattering scattering{at.normal,
                                 at.optics.reflectance,
                                 at.optics.transmittance,
                                 at.gloss,
                                 glm::reflect(direction, at.normal),
-                                std::max(at.roughness, kLeastMetRoughness)};
+                                std::max(at.roughness, kLeastMetRoughness),
+                                true};
     const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
-    return at.texture * light + lights.scattered + lights.reflected;
+    return light + lights.scattered + lights.reflected;
 }
 
 /// The solution has the light of the mesh. A slope of relief faces other light: as it would under the open sky, as far
