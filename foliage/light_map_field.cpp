@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <string>
 
 namespace kokage {
@@ -36,6 +37,9 @@ LightMapField::LightMapField(const RayQueries& queries, const GroundCells& groun
     : options_(checked(options)), geometry_(patch_geometry(queries.scene())),
       placement_(place_light_maps(tree, options.maps)), places_(placement_.places),
       window_(window_factors(Window::non_negative, options.bands)), scene_(queries.scene()) {
+    if (!options_.readers.empty() && options_.readers.size() != geometry_.centres.size())
+        throw std::invalid_argument("LightMapField: " + std::to_string(options_.readers.size()) + " readers for " +
+                                    std::to_string(geometry_.centres.size()) + " patches");
     choose_nearest(options.nearest);
     drop_unread();
     maps_ = std::make_unique<CapturedMaps>(queries, ground, places_, options.bands, options.least_directions, progress);
@@ -55,6 +59,8 @@ void LightMapField::choose_nearest(int nearest) {
     parallel_blocks(patches, 512, [&](std::size_t begin, std::size_t end) {
         std::vector<std::pair<float, std::uint32_t>> near(places_.size());
         for (std::size_t p = begin; p < end; ++p) {
+            if (!reads(p))
+                continue;
             for (std::size_t i = 0; i < near.size(); ++i)
                 near[i] = {glm::distance(geometry_.centres[p], places_[i].position), std::uint32_t(i)};
             const std::size_t kept = std::min(per_patch_ + 1, near.size());
@@ -113,6 +119,8 @@ float LightMapField::visible_share(std::size_t map, const glm::vec3& point) cons
 void LightMapField::weigh() {
     parallel_blocks(geometry_.centres.size(), 512, [&](std::size_t begin, std::size_t end) {
         for (std::size_t p = begin; p < end; ++p) {
+            if (!reads(p))
+                continue;
             double sum = 0;
             const std::span<Reading> readings{readings_.data() + p * per_patch_, per_patch_};
             for (Reading& reading : readings) {
@@ -131,7 +139,7 @@ void LightMapField::average_curved() {
     curved_.assign(geometry_.centres.size(), -1);
     std::vector<double> harmonics(count), sums(count);
     for (std::size_t p = 0; p < curved_.size(); ++p) {
-        if (!(geometry_.flatness[p] < kFlatEnough))
+        if (!reads(p) || !(geometry_.flatness[p] < kFlatEnough))
             continue;
         std::fill(sums.begin(), sums.end(), 0.0);
         double area = 0;

@@ -13,6 +13,9 @@ struct LightMapFieldOptions {
     int least_directions = 968; ///< capture rays a map
     int nearest = 4;            ///< maps that a patch reads (measured: 3 to 6 alike, 8 and more worse)
     GatherRule gather = GatherRule::cosine;
+    /// Per patch: whether it reads maps. Empty: all do. The others get no light from them, and maps that only they
+    /// would read are not captured.
+    std::vector<std::uint8_t> readers{};
 };
 
 /// Irradiance of both sides of every patch. The back of bark is inside the wood: 0.
@@ -46,11 +49,8 @@ class LightMapField {
     /// last update().
     void set_filled_shares(const std::vector<float>& front, const std::vector<float>& back);
 
-    /// One map that a patch reads, with its share; a patch's shares add up to 1 (or it reads no map at all).
-    struct Reading {
-        std::uint32_t map = 0;
-        float share = 0;
-    };
+    using Reading = LightMapShare;
+    /// A patch's shares add up to 1, or it reads no map at all.
     std::span<const Reading> readings(std::size_t patch) const {
         return {readings_.data() + patch * per_patch_, per_patch_};
     }
@@ -61,9 +61,14 @@ class LightMapField {
     /// Maps for hosts: `sky` (cell means, or empty) as seen past the tree, and what patches and ground sent at the last
     /// update(); windowed.
     std::vector<LightMap> export_maps(std::span<const glm::vec3> sky) const;
+    /// The same, with the patches' readings.
+    LightMapsOfPatches export_for_patches(std::span<const glm::vec3> sky) const {
+        return {export_maps(sky), per_patch_, readings_};
+    }
     std::size_t bytes() const;
 
   private:
+    bool reads(std::size_t patch) const { return options_.readers.empty() || options_.readers[patch] != 0; }
     void choose_nearest(int nearest);
     void drop_unread();
     void weigh();

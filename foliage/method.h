@@ -29,7 +29,11 @@ struct ShadingOptions {
         0; ///< scatterings between light and leaf; 0 = until what is missing is small against the asked error
     GatherRule gather = GatherRule::cosine;
     bool merge_weak_lights = true; ///< bundles: lights that together give a fiftieth of the asked error or less
-    bool for_hosts = false;        ///< also what only hosts read: bent normals, light maps
+    /// bundles: paths to some leaves check what lines don't show, one radiance a side, where it may be much; if it is
+    /// more than `error`, leaves are divided, or paths traced instead. Off, `error` is asked of the lines alone: for
+    /// pictures that gather light anew where they look.
+    bool check_by_paths = true;
+    bool for_hosts = false; ///< also what only hosts read: bent normals, light maps
     std::uint64_t seed = 1;
 };
 

@@ -6,6 +6,7 @@
 #include "common/trace/path_numbers.h"
 #include "reflection/flat_patches.h"
 #include "reflection/gathered_sums.h"
+#include "reflection/map_corrections.h"
 #include "reflection/sampling.h"
 
 #include <algorithm>
@@ -87,6 +88,9 @@ class Gathering {
             sample.lobe_open = summable(gloss_.open_light(at, hit.direction));
             sample.lobe_correction = summable(gloss_.correction(at, hit.direction, mirrored, index, scratch));
         }
+        if (gloss_.has_maps(at))
+            sample.lobe_of_map = {summable(gloss_.light_of_ray(at, hit.direction, mirrored, index, scratch)),
+                                  summable(gloss_.light_of_maps(at, hit.direction))};
         return sample;
     }
 
@@ -131,6 +135,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     }
     const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);
     GatheredSums sums(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1), gloss.lobe_count());
+    MapCorrections maps(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1));
     progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
     std::uint64_t traced = 0;
     for (int pass = 0; pass < rays; ++pass) {
@@ -144,8 +149,11 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
                 progress.advance(end - begin);
             });
             for (const GatheredRow& row : rows) {
-                for (const GatheredSample& sample : row.samples)
+                for (const GatheredSample& sample : row.samples) {
                     sums.add(sample);
+                    if (sample.lobe_of_map)
+                        maps.add(sample.places, sample.prior, *sample.lobe_of_map);
+                }
                 traced += row.rays;
             }
         }
@@ -158,6 +166,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     }
     sums.give_light(surfaces);
     sums.give_lobes(gloss);
+    maps.give(gloss);
     report.counts.push_back({"gathering rays", traced});
 }
 

@@ -9,6 +9,11 @@
 
 namespace kokage {
 
+/// Light through a lobe: what one ray of it brought, and what light maps say of it all.
+struct LobeOfMap {
+    glm::vec3 ray{0.f}, map{0.f};
+};
+
 /// What one point that is seen says of its patch.
 struct GatheredSample {
     LightPlaces places;
@@ -17,7 +22,8 @@ struct GatheredSample {
     bool is_flat = false;                 ///< its light may slope over the patch
     std::optional<std::uint32_t> lobe;    ///< GlossShading::lobe_of_patch
     glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
-    glm::vec3 point{0.f}, origin{0.f}; ///< where the rays began, and one corner of its patch
+    std::optional<LobeOfMap> lobe_of_map; ///< where light maps light the gloss
+    glm::vec3 point{0.f}, origin{0.f};    ///< where the rays began, and one corner of its patch
 };
 
 class GatheredSums {

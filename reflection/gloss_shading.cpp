@@ -29,6 +29,7 @@ GlossShading::GlossShading(const ShadedScene& scene, const Environment& environm
     // The horizon's correction reads narrower lobes than the surface's own.
     remainder_.emplace(environment, std::clamp(0.4f * lobes->least, kLeastRoughness, 1.f),
                        std::clamp(lobes->most, kLeastRoughness, 1.f), progress, report);
+    from_maps_.emplace(scene, environment, surfaces);
     for (const SurfaceLook& look : scene.looks)
         even_.push_back(!look.gloss.is_matt() && !look.smooth_normals && !look.gloss.roughness_texture &&
                         !look.gloss.roughness_gradient && look.gloss.roughness >= kLeastShared);
@@ -50,16 +51,36 @@ glm::vec3 GlossShading::open_light(const SurfacePoint& at, const glm::vec3& dire
     return remainder_->radiance(at.normal, mirrored(at, direction), at.roughness);
 }
 
+std::optional<glm::vec3> GlossShading::met(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                           ShadingScratch& scratch) const {
+    if (at.relief && at.relief->hides(direction))
+        return surfaces_.solved_radiance(at); // bark opposite
+    return incoming_.along(at.point, direction, sample, scratch);
+}
+
+glm::vec3 GlossShading::light_of_ray(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
+                                     SampleIndex sample, ShadingScratch& scratch) const {
+    const LobeSample drawn = sample_gloss(mirrored(at, direction), at.roughness, numbers);
+    if (!(glm::dot(at.normal, drawn.direction) > 0))
+        return glm::vec3(0.f);
+    return drawn.weight * met(at, drawn.direction, sample, scratch)
+                              .value_or(lat_long_radiance(environment_.remainder, drawn.direction));
+}
+
 glm::vec3 GlossShading::correction(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
                                    SampleIndex sample, ShadingScratch& scratch) const {
     const LobeSample drawn = sample_gloss(mirrored(at, direction), at.roughness, numbers);
     if (!(glm::dot(at.normal, drawn.direction) > 0))
         return glm::vec3(0.f);
-    const std::optional<glm::vec3> met = at.relief && at.relief->hides(drawn.direction)
-                                             ? surfaces_.solved_radiance(at) // bark opposite
-                                             : incoming_.along(at.point, drawn.direction, sample, scratch);
-    return drawn.weight * (met ? *met - lat_long_radiance(environment_.remainder, drawn.direction)
-                               : wide_lights_in(environment_, drawn.direction, at.roughness));
+    const std::optional<glm::vec3> found = met(at, drawn.direction, sample, scratch);
+    return drawn.weight * (found ? *found - lat_long_radiance(environment_.remainder, drawn.direction)
+                                 : wide_lights_in(environment_, drawn.direction, at.roughness));
+}
+
+/// Where relief hides the lobe, there is bark opposite.
+glm::vec3 GlossShading::light_of_maps(const SurfacePoint& at, const glm::vec3& direction) const {
+    const glm::vec3 light = from_maps_->radiance(at, mirrored(at, direction));
+    return at.relief ? glm::mix(surfaces_.solved_radiance(at), light, at.relief->openness) : light;
 }
 
 /// Few rays are enough where the gloss is faint beside what else is seen (Russian roulette, Arvo and Kirk 1990).
@@ -75,6 +96,8 @@ glm::vec3 GlossShading::radiance(const SurfacePoint& at, const glm::vec3& direct
     if (const auto lobe = lobe_of_patch(at))
         if (const LobeLight* light = of_patches_.find(*lobe))
             return at.gloss * light->mean * light->gradient.at(at.point);
+    if (has_maps(at))
+        return at.gloss * light_of_maps(at, direction);
     const glm::vec3 open = at.gloss * open_light(at, direction);
     const float chance = chance_of_ray(open, beside);
     if (chance < 1 && !(stratified(sample.index, sample.count, sample.pattern ^ kChancePattern) < chance))

@@ -3,6 +3,7 @@
 // stands in front of them.
 #include "reflection/glossy_light.h"
 #include "reflection/incoming_radiance.h"
+#include "reflection/light_map_gloss.h"
 #include "reflection/surface_shading.h"
 #include "reflection/values_of_some.h"
 
@@ -12,7 +13,8 @@ namespace kokage {
 
 /// The lobe is looked up in a multi-scale map as if nothing stood in the way; one ray drawn from the lobe for every
 /// camera ray corrects it: where it meets the scene, what it meets replaces the surroundings behind it. So the map
-/// carries what varies little, rays only the difference, and without anything in the way there is no noise.
+/// carries what varies little, rays only the difference, and without anything in the way there is no noise. Rough bark
+/// with light maps about it takes all from them (light_map_gloss.h).
 class GlossShading {
   public:
     /// Bakes `lobes` (gloss_in_view.h; empty: all that is in view is matt), and says in the report what that was. All
@@ -45,7 +47,19 @@ class GlossShading {
         return ValuesOfSome<LobeLight>::most_bytes(2 * patches, known);
     }
 
+    /// True where light maps give it all (light_map_gloss.h).
+    bool has_maps(const SurfacePoint& at) const { return from_maps_ && from_maps_->lights(at); }
+    /// What they give, where they do.
+    glm::vec3 light_of_maps(const SurfacePoint& at, const glm::vec3& direction) const;
+    /// What one ray of the lobe, drawn by two uniform numbers, finds of the same.
+    glm::vec3 light_of_ray(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,
+                           SampleIndex sample, ShadingScratch& scratch) const;
+    /// Of a place of light (LightPlaces), from now on.
+    void scale_maps(std::uint32_t place, const glm::vec3& factor) { from_maps_->scale(place, factor); }
+
   private:
+    std::optional<glm::vec3> met(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                 ShadingScratch& scratch) const;
     static glm::vec3 mirrored(const SurfacePoint& at, const glm::vec3& direction);
     static float chance_of_ray(const glm::vec3& open, const glm::vec3& beside);
 
@@ -54,7 +68,8 @@ class GlossShading {
     const SurfaceShading& surfaces_;
     const IncomingRadiance& incoming_;
     std::optional<GlossyRemainder> remainder_; ///< empty: no gloss is drawn by itself
-    std::vector<bool> even_;                   ///< looks whose patches may share one lobe's light
+    std::optional<LightMapGloss> from_maps_;
+    std::vector<bool> even_; ///< looks whose patches may share one lobe's light
     struct LobeLight {
         glm::vec3 mean{0.f};
         PatchGradient gradient;

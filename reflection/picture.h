@@ -2,6 +2,7 @@
 // Camera rays on shaded surfaces: the picture code that the integrated renderer grows from.
 #include "common/environment/environment.h"
 #include "common/scene/image.h"
+#include "common/scene/light_map.h"
 #include "common/scene/patch_scene.h"
 #include "common/services/progress.h"
 #include "common/services/work_report.h"
@@ -54,7 +55,10 @@ struct ShadedScene {
     /// after the camera's. Empty: nothing is glossy.
     std::vector<glm::vec3> gloss_front, gloss_back;
     std::vector<glm::vec3> radiance_front,
-        radiance_back;                ///< per patch: all light, with what gloss mirrors as if it scattered it
+        radiance_back; ///< per patch: all light, with what gloss mirrors as if it scattered it
+    /// Of smooth surfaces: what arrives about them, split-off lights apart. Rough gloss there is lit by them in place
+    /// of rays (light_map_readers.h tells where). Empty: rays light all gloss.
+    LightMapsOfPatches light_maps;
     std::optional<float> foot_height; ///< where it stands if it has no ground of its own; empty = its lowest point
 };
 

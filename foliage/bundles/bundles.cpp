@@ -75,6 +75,8 @@ class BundlesTransport : public Transport {
 
     void draw(const BundleEffort& effort, Progress& progress);
     Lit light(const Environment& environment, Progress& progress, WorkReport& report);
+    SamplingError sampling_error(const Lit& lit) const;
+    void report_no_check(const Lit& lit, const Environment& environment, WorkReport& report) const;
     SolutionError judge(const Lit& lit, const Environment& environment, Progress& progress, WorkReport& report);
     std::optional<BundleEffort> more_lines(const Lit& lit, const SolutionError& error) const;
     bool reached(const SolutionError& error) const;
@@ -215,10 +217,24 @@ void BundlesTransport::balance(Solution& solution, const Lit& lit) const {
     }
 }
 
+SamplingError BundlesTransport::sampling_error(const Lit& lit) const {
+    return {lit.sampling_error, usual_sampling_error(drawn_->effort(), mean_leaf_albedo(scene_))};
+}
+
+/// That nobody looked where there may be much.
+void BundlesTransport::report_no_check(const Lit& lit, const Environment& environment, WorkReport& report) const {
+    if (!options_.check_by_paths &&
+        !model_error_->known(sampling_error(lit), {environment, optics_, options_.max_bounces}))
+        report.skips.push_back({"check of the leaves' light by paths",
+                                "what one radiance a side gets wrong is gathered anew where the camera looks",
+                                "12,000 to 400,000 paths, and leaves in parts or paths in place of bundles where they "
+                                "find too much"});
+}
+
 SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environment, Progress& progress,
                                       WorkReport& report) {
     const LightAndMatter now{environment, optics_, options_.max_bounces};
-    const SamplingError sampling{lit.sampling_error, usual_sampling_error(drawn_->effort(), mean_leaf_albedo(scene_))};
+    const SamplingError sampling = sampling_error(lit);
     auto measure = [&] {
         Stopwatch watch;
         const SolutionError error = model_error_->measure(sampling, lit.light.radiance, lit.half_differences, now,
@@ -227,6 +243,8 @@ SolutionError BundlesTransport::judge(const Lit& lit, const Environment& environ
         return error;
     };
     const std::optional<SolutionError> known = model_error_->known(sampling, now);
+    if (!options_.check_by_paths)
+        return {sampling.shown, 0, false};
     const SolutionError error = known ? *known : measure();
     // One measurement may decide to go on, but not where to end.
     if (adaptive_ && error.measured && !model_error_->measured_twice() && !more_lines(lit, error))
@@ -240,7 +258,7 @@ std::optional<BundleEffort> BundlesTransport::more_lines(const Lit& lit, const S
         return {};
     // Where it had to be measured and can't be told yet, it is seldom small; too few lines now cost another round.
     constexpr double kLikelyShare = 0.6;
-    const double assumed = drawn_->effort().uniform_side_error;
+    const double assumed = options_.check_by_paths ? drawn_->effort().uniform_side_error : 0;
     const double model = !error.measured           ? assumed
                          : model_known(lit, error) ? error.model
                                                    : std::max(assumed, kLikelyShare * options_.error);
@@ -316,6 +334,7 @@ Solution BundlesTransport::solve(const Environment& environment, Progress& progr
     }
     fill(solution, lit);
     balance(solution, lit);
+    report_no_check(lit, environment, solution.report);
     if (adaptive_ && error.all > 1.1 * options_.error)
         solution.report.warnings.push_back(
             "the asked error was not reached; ask for path-traced, or for a larger error");
@@ -395,7 +414,8 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
     auto make = [&tree, options, adaptive,
                  albedo = mean_leaf_albedo(scene)](const PatchScene& patches, double uniform_side_error, Reach& reach,
                                                    Progress& stop) -> std::unique_ptr<Transport> {
-        const double sampling_error = sampling_error_for(options.error, uniform_side_error);
+        const double sampling_error =
+            options.check_by_paths ? sampling_error_for(options.error, uniform_side_error) : options.error;
         BundleEffort effort = effort_of_directions(
             adaptive ? directions_for_error(sampling_error, albedo) : options.effort, albedo, options.seed);
         effort.uniform_side_error = uniform_side_error;
@@ -403,7 +423,7 @@ std::unique_ptr<Transport> make_bundles_transport(const PatchScene& scene, const
         return std::make_unique<BundlesTransport>(patches, effort, options, adaptive, stop, &tree, &reach);
     };
     auto whole = [make, &scene](Reach& reach, Progress& stop) { return make(scene, kUniformSideError, reach, stop); };
-    if (!adaptive)
+    if (!adaptive || !options.check_by_paths)
         return make_steps({whole}, progress);
     auto divided = [make, &scene, &tree](Reach& reach, Progress& stop) {
         return make_divided_transport(

@@ -46,7 +46,8 @@ std::vector<SkipCase> cases(int width, int height, const std::filesystem::path& 
          [](RenderOptions& o) { o.picture.skips.lobes_out_of_view = false; }},
         {"relief below a quarter of a pixel", "relief", scenes[2],
          [](RenderOptions& o) { o.picture.skips.thin_relief = false; }},
-        {"light maps that nothing reads", "light maps", scenes[0], [](RenderOptions& o) { o.skip_light_maps = false; }},
+        {"light maps that nothing reads", "light maps", matt(scenes[0]),
+         [](RenderOptions& o) { o.skip_unread_light_maps = false; }},
         {"weak lights", "", lamp_lit(scenes[0]), [](RenderOptions& o) { o.merge_weak_lights = false; }},
     };
 }

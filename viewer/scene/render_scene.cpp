@@ -1,13 +1,32 @@
 #include "viewer/scene/render_scene.h"
 #include "common/services/count_text.h"
 #include "foliage/method.h"
+#include "foliage/patch_light_maps.h"
 #include "reflection/gloss_in_transport.h"
+#include "reflection/light_map_readers.h"
 #include "reflection/path_traced_picture.h"
 #include "viewer/scene/scene_memory.h"
 #include "viewer/scene/stage_clock.h"
 
 namespace kokage {
 namespace {
+
+/// Those that light rough bark in view, of trees alone: an object stands anywhere.
+LightMapsOfPatches light_maps_in_view(const AssembledScene& scene, const RenderOptions& options,
+                                      const RayQueries& queries, const ShadedScene& shaded,
+                                      const SideRadiance& radiance, WorkReport& report, Progress& progress) {
+    std::vector<std::uint8_t> readers = light_map_readers(shaded, scene.environment, scene.camera, options.picture);
+    for (std::size_t t = 0; t < scene.patches.triangles.size(); ++t)
+        if (scene.origins.triangle_part[t] >= scene.tree_parts)
+            readers[scene.patches.triangle_patch[t]] = 0;
+    if (!options.skip_unread_light_maps)
+        std::fill(readers.begin(), readers.end(), 1);
+    LightMapsOfPatches maps = make_patch_light_maps(queries, scene.tree, readers, scene.environment, radiance,
+                                                    {.seed = options.picture.seed}, progress, report);
+    if (maps.empty())
+        report.skips.push_back({"light maps", "no rough, glossy bark in view reads any", "their rays and memory"});
+    return maps;
+}
 
 /// The fast way: light is solved once for all patches, pixels read it.
 Picture render_solved(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, WorkReport& report,
@@ -20,10 +39,7 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     ShadingOptions shading;
     shading.error = options.error;
     shading.merge_weak_lights = options.merge_weak_lights;
-    shading.for_hosts = !options.skip_light_maps;
-    if (options.skip_light_maps)
-        report.skips.push_back({"light maps and bent normals", "the picture reads none: what is mirrored is traced",
-                                "their rays and memory"});
+    shading.check_by_paths = gather_rays_of(options.picture) == 0 || !options.skip_check_by_paths;
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
     progress.throw_if_stopped();
@@ -37,13 +53,17 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     if (solution.energy_in == 0 && !scene.patches.patches.empty())
         report.warnings.push_back("no light reaches the scene, or all of it is black");
     progress.throw_if_stopped();
+    const RayQueries queries(scene.patches);
+    if (options.light_maps)
+        shaded.light_maps = clock.run("light maps", [&] {
+            return light_maps_in_view(scene, options, queries, shaded, solution.radiance, report, progress);
+        });
     return clock.run("render", [&] {
         shaded.indirect_front = std::move(solution.indirect.front);
         shaded.indirect_back = std::move(solution.indirect.back);
         shaded.radiance_front = std::move(solution.radiance.front);
         shaded.radiance_back = std::move(solution.radiance.back);
         take_gloss_out(with_gloss, shaded);
-        const RayQueries queries(scene.patches);
         return render_picture(shaded, queries, scene.environment, scene.camera, options.picture, progress);
     });
 }
