@@ -53,10 +53,10 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     if (solution.energy_in == 0 && !scene.patches.patches.empty())
         report.warnings.push_back("no light reaches the scene, or all of it is black");
     progress.throw_if_stopped();
-    const RayQueries queries(scene.patches);
+    const auto queries = clock.run("ray structure", [&] { return std::make_unique<const RayQueries>(scene.patches); });
     if (options.light_maps)
         shaded.light_maps = clock.run("light maps", [&] {
-            return light_maps_in_view(scene, options, queries, shaded, solution.radiance, report, progress);
+            return light_maps_in_view(scene, options, *queries, shaded, solution.radiance, report, progress);
         });
     return clock.run("render", [&] {
         shaded.indirect_front = std::move(solution.indirect.front);
@@ -64,7 +64,7 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
         shaded.radiance_front = std::move(solution.radiance.front);
         shaded.radiance_back = std::move(solution.radiance.back);
         take_gloss_out(with_gloss, shaded);
-        return render_picture(shaded, queries, scene.environment, scene.camera, options.picture, progress);
+        return render_picture(shaded, *queries, scene.environment, scene.camera, options.picture, progress);
     });
 }
 
