@@ -181,6 +181,31 @@ TEST(BundlesModelError, IsMeasuredAgainUnderAnotherSkyOrLamp) {
     EXPECT_EQ(checks(relit(brighter)), 0) << "the same light, brighter";
 }
 
+TEST(BundlesModelError, IsLeftToThoseWhoGatherLightThemselves) {
+    const test::SmallTree small = leaves_on_a_half_lit_card();
+    ShadingOptions options;
+    options.error = 0.2;
+    const auto solve = [&] {
+        return make_transport(small.scene, small.tree, options, silent_progress())
+            ->solve(sun_overhead(), silent_progress());
+    };
+    const auto skips = [](const Solution& solution) {
+        return std::count_if(solution.report.skips.begin(), solution.report.skips.end(),
+                             [](const auto& skip) { return skip.what == "check of the leaves' light by paths"; });
+    };
+    const Solution checked = solve();
+    EXPECT_GT(checks(checked), 0);
+    EXPECT_EQ(checked.method_instead, "path-traced");
+    EXPECT_EQ(skips(checked), 0);
+    options.check_by_paths = false;
+    const Solution unchecked = solve();
+    EXPECT_EQ(checks(unchecked), 0);
+    EXPECT_EQ(unchecked.method_instead, "");
+    EXPECT_EQ(skips(unchecked), 1);
+    EXPECT_LT(*unchecked.estimated_error, 1.05 * options.error); // of the lines
+    EXPECT_TRUE(unchecked.report.warnings.empty());
+}
+
 TEST(BundlesModelError, ResultsAreTakenAfterASecondLook) {
     const test::SmallTree small = leaves_on_a_half_lit_card();
     ShadingOptions options;

@@ -31,8 +31,7 @@ struct Drawn {
     Picture picture;
     WorkReport report;
 
-    explicit Drawn(const SceneDescription& scene) {
-        RenderOptions options;
+    explicit Drawn(const SceneDescription& scene, RenderOptions options = {}) {
         options.picture = scene.picture;
         const AssembledScene assembled = assemble_scene(scene, silent_progress());
         RenderedScene rendered = render_scene(assembled, options, silent_progress());
@@ -81,6 +80,40 @@ TEST(RenderSkips, NoLobesButThoseThatAreWorn) {
     const Drawn smooth(scene);
     EXPECT_GT(rough.count("texels"), 100u);
     EXPECT_GT(smooth.count("texels"), 2 * rough.count("texels"));
+}
+
+TEST(RenderSkips, NoLightMapsThatNothingReads) {
+    SceneDescription scene = oak_from(3);
+    const Drawn rough(scene);
+    EXPECT_EQ(rough.skipped("light maps"), "");
+    EXPECT_GT(rough.count("light maps"), 0u);
+    RenderOptions rays;
+    rays.light_maps = false;
+    const Drawn without(scene, rays);
+    EXPECT_EQ(without.count("light maps"), 0u);
+    EXPECT_NE(without.picture.radiance.pixels, rough.picture.radiance.pixels);
+    scene.materials["bark"].roughness = 0.2;
+    const Drawn smooth(scene);
+    EXPECT_NE(smooth.skipped("light maps").find("no rough, glossy bark in view"), std::string::npos);
+    EXPECT_EQ(smooth.count("light maps"), 0u);
+    RenderOptions all;
+    all.skip_unread_light_maps = false;
+    const Drawn made(scene, all);
+    EXPECT_GT(made.count("light maps"), 0u);
+    EXPECT_EQ(made.picture.radiance.pixels, smooth.picture.radiance.pixels);
+}
+
+TEST(RenderSkips, NoPathsThatCheckWhatIsGathered) {
+    const std::string check = "check of the leaves' light by paths";
+    SceneDescription scene = oak_from(3);
+    EXPECT_NE(Drawn(scene).skipped(check).find("gathered anew"), std::string::npos);
+    RenderOptions checked;
+    checked.skip_check_by_paths = false;
+    const Drawn with(scene, checked);
+    EXPECT_EQ(with.skipped(check), "");
+    EXPECT_GT(with.count("paths that checked the error"), 0u);
+    scene.picture.gather_rays = 0; // then the picture shows what was solved
+    EXPECT_GT(Drawn(scene).count("paths that checked the error"), 0u);
 }
 
 TEST(RenderSkips, ReliefOnlyWhereAQuarterPixelOfItIsSeen) {
