@@ -1,10 +1,10 @@
 #include "reflection/final_gather.h"
-#include "common/directions/about_axis.h"
 #include "common/environment/lat_long.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
 #include "common/trace/path_numbers.h"
 #include "reflection/flat_patches.h"
+#include "reflection/gather_directions.h"
 #include "reflection/gathered_sums.h"
 #include "reflection/map_corrections.h"
 #include "reflection/sampling.h"
@@ -39,16 +39,18 @@ class Gathering {
               const PictureOptions& options, const IncomingRadiance& incoming, const Environment& environment,
               const SurfaceShading& surfaces, const GlossShading& gloss)
         : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
-          environment_(environment), surfaces_(surfaces), gloss_(gloss), flat_(flat_patches(*scene.patches)) {}
+          environment_(environment), surfaces_(surfaces), gloss_(gloss), flat_(flat_patches(*scene.patches)),
+          directions_(environment, incoming.has_ground()), rays_(std::uint32_t(gather_rays_of(options))) {}
 
     /// By one ray a pixel of a row: of what the camera sees and `sums` knows too little of.
     GatheredRow row(int pass, int y, const GatheredSums& sums) const {
         std::vector<PathNumbers> numbers;
         std::vector<CameraHit> hits;
-        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers + std::uint64_t(pass)));
+        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers));
         for (int x = 0; x < options_.width; ++x) {
-            // Numbers in a row fill squares of the picture.
-            numbers.emplace_back(seed, place_on_curve(std::uint32_t(x), std::uint32_t(y)));
+            // Numbers in a row fill squares of the picture, and a pixel's rays are in a row.
+            numbers.emplace_back(seed,
+                                 rays_ * place_on_curve(std::uint32_t(x), std::uint32_t(y)) + std::uint32_t(pass));
             const glm::vec2 place = numbers.back().pair();
             hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
         }
@@ -77,7 +79,7 @@ class Gathering {
         sample.origin = patches.positions[patches.triangles[patches.patches[at.patch].first_triangle].x];
         sample.is_flat = !at.smooth && flat_[at.patch];
         sample.solved = summable(surfaces_.solved(at));
-        sample.prior = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
+        sample.look = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
         const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
         const float choice = numbers.single();
         const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
@@ -94,19 +96,18 @@ class Gathering {
         return sample;
     }
 
-    /// One ray of the cosine lobe before or behind the surface.
     glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, float choice, const glm::vec2& place,
                               SampleIndex index, ShadingScratch& scratch) const {
-        const float reflected = luminance(optics.reflectance), transmitted = luminance(optics.transmittance);
-        if (!(reflected + transmitted > 0))
-            return glm::vec3(0.f);
-        const float share = reflected / (reflected + transmitted);
         const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
-        const bool before = choice < share;
-        const glm::vec3 direction = about_axis(cosine_direction(place), before ? normal : -normal);
-        const glm::vec3 seen = summable(incoming_.along(at.point, direction, index, scratch)
-                                            .value_or(lat_long_radiance(environment_.remainder, direction)));
-        return seen * (before ? optics.reflectance / share : optics.transmittance / (1 - share));
+        const GatherDirections::Drawn drawn = directions_.draw(normal, optics, place, choice);
+        if (!(luminance(drawn.weight) > 0))
+            return glm::vec3(0.f);
+        // Grazing rays would meet the surface that they leave, which is only known to rounding.
+        const glm::vec3 origin =
+            at.point + std::copysign(incoming_.ray_offset(), glm::dot(normal, drawn.direction)) * at.geometric_normal;
+        const glm::vec3 seen = incoming_.along(origin, drawn.direction, index, scratch)
+                                   .value_or(lat_long_radiance(environment_.remainder, drawn.direction));
+        return summable(drawn.weight * summable(seen));
     }
 
     const ShadedScene& scene_;
@@ -118,6 +119,8 @@ class Gathering {
     const SurfaceShading& surfaces_;
     const GlossShading& gloss_;
     const std::vector<std::uint8_t> flat_;
+    const GatherDirections directions_;
+    std::uint32_t rays_; ///< a pixel
 };
 
 } // namespace
@@ -134,7 +137,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
         return;
     }
     const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);
-    GatheredSums sums(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1), gloss.lobe_count());
+    GatheredSums sums(surfaces.light_count(), gloss.lobe_count());
     MapCorrections maps(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1));
     progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
     std::uint64_t traced = 0;
@@ -152,7 +155,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
                 for (const GatheredSample& sample : row.samples) {
                     sums.add(sample);
                     if (sample.lobe_of_map)
-                        maps.add(sample.places, sample.prior, *sample.lobe_of_map);
+                        maps.add(sample.places, sample.look, *sample.lobe_of_map);
                 }
                 traced += row.rays;
             }
@@ -164,7 +167,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
             break;
         }
     }
-    sums.give_light(surfaces);
+    sums.give_light(surfaces, *scene.patches, frame);
     sums.give_lobes(gloss);
     maps.give(gloss);
     report.counts.push_back({"gathering rays", traced});

@@ -1,13 +1,17 @@
 #include "reflection/gathered_sums.h"
+#include "reflection/seen_share.h"
 
 #include <algorithm>
+#include <vector>
 
 namespace kokage {
 namespace {
 
-/// How many rays the mean correction of a look counts as, beside a patch's own: a ray's light varies about four times
-/// as much (in standard deviation) as patches' corrections do; of lobes, hardly more than they do.
-constexpr double kRaysOfPrior = 16, kLobesOfPrior = 2;
+/// How many rays the mean correction of a look's lobes counts as, beside a patch's own: a ray's light varies hardly
+/// more than patches' corrections do.
+constexpr double kLobesOfPrior = 2;
+/// Classes of a look and side, for what is expected of gathered light: tenths that are seen of a patch, and corners.
+constexpr std::uint32_t kShares = 11, kCorners = kShares, kClassesOfLook = kShares + 1;
 /// Rays of a patch (or corner) after which more are not worth their time. A patch that has so many pixels is large: the
 /// eye would miss how its reflections change, so they are traced pixel by pixel.
 constexpr float kEnough = 400;
@@ -15,96 +19,106 @@ constexpr float kLeastWeight = 1e-6f; ///< of a corner, so that no product is to
 
 } // namespace
 
-GatheredSums::GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes)
-    : of_places_(places), of_lobes_(lobes), moments_of_places_(places), moments_of_lobes_(lobes), of_looks_(2 * looks),
-      lobes_of_looks_(2 * looks) {}
+GatheredSums::GatheredSums(std::size_t places, std::size_t lobes)
+    : of_places_(places), of_lobes_(lobes), moments_of_places_(places), moments_of_lobes_(lobes) {}
 
 void GatheredSums::add(const GatheredSample& sample) {
     for (std::size_t k = 0; k < 3; ++k)
         if (const float weight = sample.places.weights[k]; weight > kLeastWeight)
-            of_places_.at(sample.places.places[k]).add(weight, sample.gathered, sample.solved, sample.prior);
+            of_places_.at(sample.places.places[k]).add(weight, sample.gathered, sample.solved, sample.look);
     if (sample.is_flat)
         moments_of_places_.at(sample.places.places[0], sample.origin).add(sample.point, luminance(sample.gathered));
-    of_looks_[sample.prior].add(1, sample.gathered, sample.solved, sample.prior);
     if (sample.lobe) {
-        of_lobes_.at(*sample.lobe).add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
+        Lobe& lobe = of_lobes_.at(*sample.lobe);
+        lobe.open += sample.lobe_open;
+        lobe.correction += sample.lobe_correction;
+        ++lobe.weight;
+        lobe.look = sample.look;
         moments_of_lobes_.at(*sample.lobe, sample.origin)
             .add(sample.point, luminance(sample.lobe_open + sample.lobe_correction));
-        lobes_of_looks_[sample.prior].add(1, sample.lobe_correction, sample.lobe_open, sample.prior);
     }
     ++samples_;
 }
 
 void GatheredSums::end_pass() {
-    for (Sum& sum : of_places_.values())
-        sum.has_enough = sum.weight >= kEnough;
-    if (passes_++ == 0)
-        for (Sum& sum : of_lobes_.values())
-            sum.is_large = sum.weight >= kEnough;
+    ++passes_;
+    for (Place& place : of_places_.values())
+        if (place.passes == 0 && place.weight >= kEnough)
+            place.passes = passes_;
+    if (passes_ == 1)
+        for (Lobe& lobe : of_lobes_.values())
+            lobe.is_large = lobe.weight >= kEnough;
 }
 
 std::size_t GatheredSums::bytes() const {
-    return of_places_.bytes() + of_lobes_.bytes() + moments_of_places_.bytes() + moments_of_lobes_.bytes() +
-           (of_looks_.capacity() + lobes_of_looks_.capacity()) * sizeof(LookSum);
+    return of_places_.bytes() + of_lobes_.bytes() + moments_of_places_.bytes() + moments_of_lobes_.bytes();
 }
 
 double GatheredSums::most_bytes(const Counts& counts) {
     const double places = 2 * (counts.patches + counts.corners), lobes = 2 * counts.patches;
-    using Sums = ValuesOfSome<Sum>;
     using Moments = ValuesOfSome<PatchMoments>;
-    return Sums::most_bytes(places, counts.seen_patches + counts.seen_corners) +
-           Sums::most_bytes(lobes, counts.seen_patches) + Moments::most_bytes(places, counts.seen_patches) +
-           Moments::most_bytes(lobes, counts.seen_patches);
+    return ValuesOfSome<Place>::most_bytes(places, counts.seen_patches + counts.seen_corners) +
+           ValuesOfSome<Lobe>::most_bytes(lobes, counts.seen_patches) +
+           Moments::most_bytes(places, counts.seen_patches) + Moments::most_bytes(lobes, counts.seen_patches);
 }
 
 bool GatheredSums::enough(const LightPlaces& places) const {
     for (std::size_t k = 0; k < 3; ++k)
         if (places.weights[k] > kLeastWeight)
-            if (const Sum* sum = of_places_.find(places.places[k]); !sum || !sum->has_enough)
+            if (const Place* place = of_places_.find(places.places[k]); !place || place->passes == 0)
                 return false;
     return true;
 }
 
-glm::dvec3 GatheredSums::ratio(const LookSum& sum) {
-    glm::dvec3 result(1.);
-    for (std::size_t c = 0; c < 3; ++c)
-        if (sum.solved[c] > 0) {
-            const double prior = kRaysOfPrior * sum.solved[c] / sum.weight;
-            result[c] = (sum.gathered[c] + prior) / (sum.solved[c] + prior);
-        }
-    return result;
+std::uint32_t GatheredSums::class_of(std::uint32_t place, const Place& sums, const PatchScene& patches,
+                                     const CameraFrame& frame) const {
+    const auto of_side = std::uint32_t(of_places_.places() / 2), number = place % of_side;
+    if (number >= patches.patches.size())
+        return kClassesOfLook * sums.look + kCorners;
+    const double could_be_seen = pixels_of_patch(patches, patches.patches[number], place < of_side, frame),
+                 is_seen = double(sums.weight) / (sums.passes > 0 ? sums.passes : passes_);
+    const double share = could_be_seen > 0 ? std::clamp(is_seen / could_be_seen, 0., 1.) : 0;
+    return kClassesOfLook * sums.look + std::uint32_t(share * (kShares - 1));
 }
 
-/// What was solved as black has nothing to scale: it becomes what was gathered.
-glm::vec3 GatheredSums::corrected(const glm::vec3& light, const Sum& sum, const glm::dvec3& ratio_of_look) {
-    glm::vec3 result(0.f);
-    const double rays = double(sum.weight) + kRaysOfPrior;
-    for (std::size_t c = 0; c < 3; ++c) {
-        const double mean = double(sum.solved[c]) / double(sum.weight);
-        const double gathered = double(sum.gathered[c]) + kRaysOfPrior * mean * ratio_of_look[c];
-        result[c] = float(mean > 0 ? double(light[c]) * gathered / (mean * rays)
-                                   : double(sum.gathered[c]) / double(sum.weight));
-    }
-    return result;
-}
-
-void GatheredSums::give_light(SurfaceShading& surfaces) const {
-    of_places_.for_each([&](std::uint32_t place, const Sum& sum) {
-        surfaces.set_light(place, corrected(surfaces.light(place), sum, ratio(of_looks_[sum.prior])));
+void GatheredSums::give_light(SurfaceShading& surfaces, const PatchScene& patches, const CameraFrame& frame) const {
+    std::vector<PlaceSums> seen;
+    std::vector<std::uint32_t> classes;
+    std::uint32_t looks = 0;
+    of_places_.for_each([&](std::uint32_t place, const Place& sums) {
+        seen.push_back(sums);
+        classes.push_back(class_of(place, sums, patches, frame));
+        looks = std::max(looks, sums.look + 1);
+    });
+    const std::vector<GatherPrior> priors =
+        fit_gather_priors(seen, classes, std::size_t(looks) * kClassesOfLook, kClassesOfLook);
+    auto of_class = classes.begin();
+    of_places_.for_each([&](std::uint32_t place, const Place& sums) {
+        surfaces.set_light(place, corrected_light(surfaces.light(place), sums, priors[*of_class++]));
     });
     moments_of_places_.for_each(
         [&](std::uint32_t place, const PatchMoments& moments) { surfaces.set_gradient(place, moments.gradient()); });
 }
 
 void GatheredSums::give_lobes(GlossShading& gloss) const {
-    of_lobes_.for_each([&](std::uint32_t lobe, const Sum& sum) {
-        if (sum.is_large)
+    struct Mean {
+        glm::dvec3 correction{0.};
+        double weight = 0;
+    };
+    std::vector<Mean> of_looks;
+    of_lobes_.for_each([&](std::uint32_t, const Lobe& lobe) {
+        of_looks.resize(std::max<std::size_t>(of_looks.size(), lobe.look + 1));
+        of_looks[lobe.look].correction += glm::dvec3(lobe.correction);
+        of_looks[lobe.look].weight += double(lobe.weight);
+    });
+    of_lobes_.for_each([&](std::uint32_t place, const Lobe& lobe) {
+        if (lobe.is_large)
             return;
-        const LookSum& all = lobes_of_looks_[sum.prior];
-        const glm::dvec3 prior = kLobesOfPrior * all.gathered / all.weight,
-                         correction = (glm::dvec3(sum.gathered) + prior) / (double(sum.weight) + kLobesOfPrior);
-        gloss.set_light_of_patch(lobe, glm::max(sum.solved / sum.weight + glm::vec3(correction), glm::vec3(0.f)),
-                                 moments_of_lobes_.find(lobe)->gradient());
+        const Mean& all = of_looks[lobe.look];
+        const glm::dvec3 prior = kLobesOfPrior * all.correction / all.weight,
+                         correction = (glm::dvec3(lobe.correction) + prior) / (double(lobe.weight) + kLobesOfPrior);
+        gloss.set_light_of_patch(place, glm::max(lobe.open / lobe.weight + glm::vec3(correction), glm::vec3(0.f)),
+                                 moments_of_lobes_.find(place)->gradient());
     });
 }
 

@@ -1,11 +1,11 @@
 #pragma once
 // What rays gathered, summed up over what the camera sees, and what follows for a patch's light. Private to reflection.
+#include "reflection/gather_prior.h"
 #include "reflection/gloss_shading.h"
 #include "reflection/surface_shading.h"
 #include "reflection/values_of_some.h"
 
 #include <optional>
-#include <vector>
 
 namespace kokage {
 
@@ -18,7 +18,7 @@ struct LobeOfMap {
 struct GatheredSample {
     LightPlaces places;
     glm::vec3 gathered{0.f}, solved{0.f}; ///< light that its ray brought, and that was solved
-    std::uint32_t prior = 0;              ///< look and side, whose mean correction a patch of few rays takes
+    std::uint32_t look = 0;               ///< 2 look + side, whose mean correction a patch of few rays takes
     bool is_flat = false;                 ///< its light may slope over the patch
     std::optional<std::uint32_t> lobe;    ///< GlossShading::lobe_of_patch
     glm::vec3 lobe_open{0.f}, lobe_correction{0.f};
@@ -28,8 +28,8 @@ struct GatheredSample {
 
 class GatheredSums {
   public:
-    /// Of so many places of light, looks and lobes.
-    GatheredSums(std::size_t places, std::size_t looks, std::size_t lobes);
+    /// Of so many places of light and lobes.
+    GatheredSums(std::size_t places, std::size_t lobes);
 
     void add(const GatheredSample& sample);
     /// To be called when every pixel had one more ray.
@@ -44,35 +44,27 @@ class GatheredSums {
     /// As it was at the end of the last pass, so that all of a patch is gathered or nothing.
     bool enough(const LightPlaces& places) const;
 
-    void give_light(SurfaceShading& surfaces) const;
+    void give_light(SurfaceShading& surfaces, const PatchScene& patches, const CameraFrame& frame) const;
     /// All but those of large patches.
     void give_lobes(GlossShading& gloss) const;
 
   private:
-    /// In single precision where there are many.
-    template <typename Vector>
-    struct SumOf {
-        Vector gathered{0}, solved{0};
-        typename Vector::value_type weight = 0;
-        std::uint32_t prior = 0;
-        bool has_enough = false;
-        bool is_large = false; ///< lobes: has enough after the first pass
-        void add(float w, const glm::vec3& of_ray, const glm::vec3& of_solution, std::uint32_t of_prior) {
-            gathered += Vector(w * of_ray);
-            solved += Vector(w * of_solution);
-            weight += w;
-            prior = of_prior;
-        }
+    struct Place : PlaceSums {
+        int passes = 0; ///< after which it had rays enough; 0: it hasn't
     };
-    using Sum = SumOf<glm::vec3>;
-    using LookSum = SumOf<glm::dvec3>;
+    struct Lobe {
+        glm::vec3 open{0.f}, correction{0.f};
+        float weight = 0;
+        std::uint32_t look = 0;
+        bool is_large = false; ///< has enough rays after the first pass
+    };
 
-    static glm::dvec3 ratio(const LookSum& sum);
-    static glm::vec3 corrected(const glm::vec3& light, const Sum& sum, const glm::dvec3& ratio_of_look);
+    std::uint32_t class_of(std::uint32_t place, const Place& sums, const PatchScene& patches,
+                           const CameraFrame& frame) const;
 
-    ValuesOfSome<Sum> of_places_, of_lobes_;
+    ValuesOfSome<Place> of_places_;
+    ValuesOfSome<Lobe> of_lobes_;
     ValuesOfSome<PatchMoments> moments_of_places_, moments_of_lobes_;
-    std::vector<LookSum> of_looks_, lobes_of_looks_; ///< front and back of each look
     std::uint64_t samples_ = 0;
     int passes_ = 0;
 };

@@ -20,6 +20,8 @@ class IncomingRadiance {
     std::optional<glm::vec3> along(const glm::vec3& origin, const glm::vec3& direction, SampleIndex sample,
                                    ShadingScratch& scratch) const;
 
+    float ray_offset() const { return queries_.ray_offset(); }
+    bool has_ground() const { return ground_.height().has_value(); }
     /// Where a ray meets the ground; infinite if it doesn't.
     float ground_distance(const glm::vec3& origin, const glm::vec3& direction) const {
         return ground_.distance(origin, direction);

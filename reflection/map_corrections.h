@@ -11,7 +11,7 @@ class MapCorrections {
     /// Of so many places of light and looks.
     MapCorrections(std::size_t places, std::size_t looks) : of_places_(places), of_looks_(2 * looks) {}
 
-    /// `look`: GatheredSample::prior, whose mean stands in for rays that a corner has too few of.
+    /// `look`: GatheredSample::look, whose mean stands in for rays that a corner has too few of.
     void add(const LightPlaces& places, std::uint32_t look, const LobeOfMap& sample);
     /// Scales what the maps give.
     void give(GlossShading& gloss) const;

@@ -72,7 +72,7 @@ TEST(PictureMemory, OfLightAndGatheringIsWhatALargeSceneTakes) {
 TEST(PictureMemory, OfGatheringGrowsWithWhatIsSeen) {
     constexpr std::uint32_t kPatches = 20000;
     for (const std::uint32_t seen : {100u, 3000u, 20000u}) {
-        GatheredSums sums(2 * kPatches, 1, 2 * kPatches);
+        GatheredSums sums(2 * kPatches, 2 * kPatches);
         for (std::uint32_t k = 0; k < seen; ++k) {
             GatheredSample sample;
             sample.places.places.fill(k);

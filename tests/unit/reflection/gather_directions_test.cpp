@@ -1,0 +1,81 @@
+#include "common/environment/analytic_sky.h"
+#include "common/environment/lat_long.h"
+#include "common/services/random.h"
+#include "reflection/gather_directions.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace kokage::test {
+namespace {
+
+const Optics kLeaf{{0.3f, 0.4f, 0.1f}, {0.2f, 0.3f, 0.05f}};
+
+glm::dvec3 drawn_light(const GatherDirections& directions, const Image& sky, const glm::vec3& normal, int rays,
+                       double& variance) {
+    Random random(7);
+    glm::dvec3 sum(0.);
+    double squares = 0;
+    for (int k = 0; k < rays; ++k) {
+        const glm::vec2 numbers{random.uniform(), random.uniform()};
+        const auto drawn = directions.draw(normal, kLeaf, numbers, random.uniform());
+        const glm::vec3 light = drawn.weight * lat_long_radiance(sky, drawn.direction);
+        sum += glm::dvec3(light);
+        squares += double(luminance(light)) * double(luminance(light));
+    }
+    const double mean = double(luminance(glm::vec3(sum))) / rays;
+    variance = squares / rays - mean * mean;
+    return sum / double(rays);
+}
+
+/// Pixel by pixel.
+glm::dvec3 summed_light(const Image& sky, const glm::vec3& normal) {
+    glm::dvec3 sum(0.);
+    constexpr int kRows = 360;
+    for (int y = 0; y < kRows; ++y)
+        for (int x = 0; x < 2 * kRows; ++x) {
+            const glm::vec3 direction =
+                direction_from_lat_long({(float(x) + 0.5f) / (2 * kRows), (float(y) + 0.5f) / kRows});
+            const float cosine = glm::dot(normal, direction);
+            const glm::vec3 scattered = (cosine > 0 ? kLeaf.reflectance : kLeaf.transmittance) * std::abs(cosine);
+            sum += glm::dvec3(scattered * lat_long_radiance(sky, direction)) * pixel_solid_angle(y, 2 * kRows, kRows) /
+                   kPiDouble;
+        }
+    return sum;
+}
+
+TEST(GatherDirections, MeetTheLightOfAnySkyInTheMean) {
+    Environment spot;
+    spot.remainder = Image(64, 32, 3);
+    for (float& value : spot.remainder.pixels)
+        value = 0.2f;
+    for (int x = 20; x < 24; ++x)
+        for (std::size_t c = 0; c < 3; ++c)
+            spot.remainder.at(x, 8)[c] = 60;
+    for (const bool above_ground : {false, true})
+        for (const glm::vec3& normal : {glm::vec3(0, 1, 0), glm::normalize(glm::vec3(0.5f, -0.2f, 0.8f))}) {
+            const GatherDirections directions(spot, above_ground);
+            double variance = 0;
+            const glm::dvec3 drawn = drawn_light(directions, spot.remainder, normal, 400000, variance);
+            const glm::dvec3 truth = summed_light(spot.remainder, normal);
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(drawn[c] / truth[c], 1, 0.015);
+        }
+}
+
+TEST(GatherDirections, SeekBrightPartsWhereThereAreAny) {
+    Environment spot = constant_environment(glm::vec3(0.2f));
+    double even_variance = 0, variance = 0;
+    drawn_light(GatherDirections(spot, false), spot.remainder, {0, 1, 0}, 10000, even_variance);
+    EXPECT_LT(even_variance, 1e-9); // cosine lobes alone: each ray tells all
+    spot.remainder = Image(64, 32, 3);
+    for (std::size_t c = 0; c < 3; ++c)
+        spot.remainder.at(20, 8)[c] = 600;
+    const glm::dvec3 drawn = drawn_light(GatherDirections(spot, true), spot.remainder, {0, 1, 0}, 100000, variance);
+    // Cosine lobes alone meet a pixel of a thousand: a variance of hundreds of times the mean's square.
+    EXPECT_LT(variance, 6 * std::pow(double(luminance(glm::vec3(drawn))), 2));
+}
+
+} // namespace
+} // namespace kokage::test
