@@ -153,7 +153,11 @@ glm::vec3 SurfaceShading::indirect_on_relief(const SurfacePoint& at) const {
             turn[c] = 1 + share * (std::min(turned_light[c] / open_light[c], kMostTurn) - 1);
         walls[c] = relief.openness / std::max(1 - reflectance[c] * (1 - relief.openness), 1e-3f);
     }
-    walls *= scene_.radiance_front[at.patch];
+    // Gathered light takes the place of the indirect light that was solved.
+    walls *=
+        pixel_shadows_
+            ? glm::max(scene_.radiance_front[at.patch] - scene_.indirect_front[at.patch], glm::vec3(0.f)) + mesh_light
+            : mesh_light;
     return relief.openness * at.texture * mesh_light * turn + (1 - relief.openness) * at.optics.reflectance * walls;
 }
 

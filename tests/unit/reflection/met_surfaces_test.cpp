@@ -32,13 +32,8 @@ struct PanelInMirror {
         const Camera camera = camera_at({3, 3, 0}, {0, 0, 0}, 0.08f);
         const RayQueries queries(patches);
         const auto draw = truth ? render_path_traced : render_picture;
-        const Image picture =
-            draw(scene, queries, environment, camera, without_ground(12, 12, samples), silent_progress()).radiance;
-        glm::dvec3 sum(0.);
-        for (int y = 0; y < 12; ++y)
-            for (int x = 0; x < 12; ++x)
-                sum += glm::dvec3(pixel(picture, x, y)) / 144.;
-        return sum;
+        return mean_of(
+            draw(scene, queries, environment, camera, without_ground(12, 12, samples), silent_progress()).radiance);
     }
 };
 

@@ -1,7 +1,7 @@
 #include "common/environment/analytic_sky.h"
 #include "common/services/parallel.h"
 #include "reflection/path_traced_picture.h"
-#include "tests/unit/reflection/picture_scenes.h"
+#include "tests/unit/reflection/ball.h"
 
 #include <cmath>
 #include <gtest/gtest.h>
@@ -9,50 +9,11 @@
 namespace kokage::test {
 namespace {
 
-/// A ball of one patch with smooth normals.
-struct Ball {
-    PatchScene patches;
-    ShadedScene scene;
-
-    explicit Ball(const Optics& optics, const Gloss& gloss) {
-        constexpr int kRings = 48, kSegments = 96;
-        for (int r = 0; r <= kRings; ++r)
-            for (int s = 0; s < kSegments; ++s) {
-                const float polar = kPi * float(r) / kRings, azimuth = 2 * kPi * float(s) / kSegments;
-                patches.positions.emplace_back(std::sin(polar) * std::cos(azimuth), std::cos(polar),
-                                               -std::sin(polar) * std::sin(azimuth));
-            }
-        const auto at = [&](int r, int s) { return std::uint32_t(r * kSegments + s % kSegments); };
-        for (int r = 0; r < kRings; ++r)
-            for (int s = 0; s < kSegments; ++s) {
-                patches.triangles.emplace_back(at(r, s), at(r + 1, s), at(r + 1, s + 1));
-                patches.triangles.emplace_back(at(r, s), at(r + 1, s + 1), at(r, s + 1));
-            }
-        patches.triangle_patch.assign(patches.triangles.size(), 0);
-        patches.patches.push_back({0, std::uint32_t(patches.triangles.size()), 0, PatchKind::bark, 0});
-        patches.optics = {optics};
-        scene = evenly_shaded(patches, glm::vec3(0.f));
-        scene.normals = patches.positions;
-        SurfaceLook look;
-        look.gloss = gloss;
-        look.smooth_normals = true;
-        scene.looks = {look};
-        scene.triangle_look.assign(patches.triangles.size(), 0);
-    }
-};
-
 Gloss varnish(float roughness, float reflectance = 0.5f) {
     Gloss gloss;
     gloss.normal_reflectance = glm::vec3(reflectance);
     gloss.roughness = roughness;
     return gloss;
-}
-
-glm::dvec3 mean_of(const Image& image) {
-    glm::dvec3 sum(0.);
-    for (std::size_t k = 0; k < image.pixels.size(); ++k)
-        sum[k % 3] += double(image.pixels[k]);
-    return sum * 3. / double(image.pixels.size());
 }
 
 /// The middle of the ball: everything seen belongs to it.

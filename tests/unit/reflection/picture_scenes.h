@@ -46,6 +46,19 @@ inline PictureOptions without_ground(int width, int height, int samples) {
     return options;
 }
 
+/// Of the columns from `begin` to before `end`.
+inline glm::dvec3 mean_of_columns(const Image& image, int begin, int end) {
+    glm::dvec3 sum(0.);
+    for (int y = 0; y < image.height; ++y)
+        for (int x = begin; x < end; ++x)
+            sum += glm::dvec3(image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]);
+    return sum / (double(end - begin) * image.height);
+}
+
+inline glm::dvec3 mean_of(const Image& image) {
+    return mean_of_columns(image, 0, image.width);
+}
+
 inline glm::vec3 pixel(const Image& image, int x, int y) {
     return {image.at(x, y)[0], image.at(x, y)[1], image.at(x, y)[2]};
 }

@@ -30,13 +30,6 @@ Picture fast(const BarkTube& tube, const Environment& environment, const Camera&
     return render_picture(tube.scene, RayQueries(tube.patches), environment, camera, options, silent_progress());
 }
 
-glm::dvec3 mean_of(const Image& image) {
-    glm::dvec3 sum(0.);
-    for (std::size_t k = 0; k < image.pixels.size(); ++k)
-        sum[k % 3] += double(image.pixels[k]);
-    return sum * 3. / double(image.pixels.size());
-}
-
 /// Mean difference of pixels over the mean.
 double difference(const Image& a, const Image& b) {
     double sum = 0, mean = 0;
