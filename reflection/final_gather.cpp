@@ -182,7 +182,9 @@ double gathering_bytes(const PictureOptions& options, double patches, double cor
     const double row = double(options.width), row_of_hits = row * double(sizeof(CameraHit) + sizeof(PathNumbers)),
                  row_of_samples = row * double(sizeof(GatheredSample));
     constexpr double kGrown = 2; // vectors that are filled without being told how far
-    return GatheredSums::most_bytes(counts) + PatchGradients::most_bytes(2 * (patches + corners), counts.seen_patches) +
+    return GatheredSums::most_bytes(counts) + GatheredSums::most_bytes_to_give(counts) +
+           MapCorrections::most_bytes(2 * (patches + corners), counts.seen_corners) +
+           PatchGradients::most_bytes(2 * (patches + corners), counts.seen_patches) +
            GlossShading::most_lobe_bytes(patches, counts.seen_patches) + patches +
            kGrown * (kRowsAtOnce * row_of_samples + threads * row_of_hits);
 }

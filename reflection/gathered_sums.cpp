@@ -62,6 +62,10 @@ double GatheredSums::most_bytes(const Counts& counts) {
            Moments::most_bytes(places, counts.seen_patches) + Moments::most_bytes(lobes, counts.seen_patches);
 }
 
+double GatheredSums::most_bytes_to_give(const Counts& counts) {
+    return 2 * (counts.seen_patches + counts.seen_corners) * double(sizeof(PlaceSums) + sizeof(std::uint32_t));
+}
+
 bool GatheredSums::enough(const LightPlaces& places) const {
     for (std::size_t k = 0; k < 3; ++k)
         if (places.weights[k] > kLeastWeight)

@@ -36,11 +36,14 @@ class GatheredSums {
     void end_pass();
     std::uint64_t samples() const { return samples_; }
     std::size_t bytes() const;
-    /// The most that bytes() may be: `corners` are of smooth surfaces, `seen_...` those that samples had.
+    /// `corners` are of smooth surfaces, `seen_...` those that samples had.
     struct Counts {
         double patches = 0, corners = 0, seen_patches = 0, seen_corners = 0;
     };
+    /// The most that bytes() may be.
     static double most_bytes(const Counts& counts);
+    /// The most that give_light takes beside, while it works.
+    static double most_bytes_to_give(const Counts& counts);
     /// As it was at the end of the last pass, so that all of a patch is gathered or nothing.
     bool enough(const LightPlaces& places) const;
 

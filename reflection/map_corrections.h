@@ -15,6 +15,10 @@ class MapCorrections {
     void add(const LightPlaces& places, std::uint32_t look, const LobeOfMap& sample);
     /// Scales what the maps give.
     void give(GlossShading& gloss) const;
+    /// The most that it takes for so many places, of which samples had so many.
+    static double most_bytes(double places, double seen) {
+        return ValuesOfSome<Sum<glm::vec3>>::most_bytes(places, seen);
+    }
 
   private:
     template <typename Vector>
