@@ -1,6 +1,6 @@
 #include "viewer/bake_report.h"
+#include "common/services/memory.h"
 #include "viewer/scene/output_check.h"
-#include "viewer/shading_report.h"
 
 #include <nlohmann/json.hpp>
 

@@ -1,6 +1,6 @@
 #include "viewer/render_report.h"
+#include "common/services/memory.h"
 #include "viewer/report_json.h"
-#include "viewer/shading_report.h"
 
 namespace kokage {
 namespace {

@@ -1,10 +1,10 @@
 #include "viewer/shading_report.h"
+#include "common/services/memory.h"
 #include "viewer/report_json.h"
 
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <sys/resource.h>
 
 namespace kokage {
 namespace {
@@ -47,12 +47,6 @@ Json method_json(const ShadingRecord& record) {
 }
 
 } // namespace
-
-std::uint64_t peak_memory_bytes() {
-    rusage usage{};
-    getrusage(RUSAGE_SELF, &usage);
-    return std::uint64_t(usage.ru_maxrss) * 1024;
-}
 
 Json shading_report(const ShadingRecord& record) {
     const Solution& solution = *record.solution;

@@ -28,7 +28,4 @@ struct ShadingRecord {
 /// Numbers that are not finite become null.
 nlohmann::ordered_json shading_report(const ShadingRecord& record);
 
-/// The largest memory that the process has used so far, in bytes.
-std::uint64_t peak_memory_bytes();
-
 } // namespace kokage

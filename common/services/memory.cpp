@@ -114,4 +114,12 @@ std::uint64_t available_memory_bytes(const fs::path& root) {
     return std::min({own, free_in_system(root), free_in_control_groups(root)});
 }
 
+std::uint64_t peak_memory_bytes() {
+    if (const std::uint64_t kilobytes = number_after("/proc/self/status", "VmHWM:"))
+        return 1024 * kilobytes;
+    rusage usage{}; // on Linux it has the parent's in it
+    getrusage(RUSAGE_SELF, &usage);
+    return 1024 * std::uint64_t(usage.ru_maxrss);
+}
+
 } // namespace kokage

@@ -16,4 +16,7 @@ void keep_freed_memory();
 /// system's files are looked for; the limit of address space is looked at for "/" alone.
 std::uint64_t available_memory_bytes(const std::filesystem::path& root = "/");
 
+/// The most that this process had in memory so far.
+std::uint64_t peak_memory_bytes();
+
 } // namespace kokage
