@@ -6,13 +6,14 @@
 
 namespace kokage {
 
-/// From this roughness on, maps of a few places tell more of a lobe than the rays of a usual picture (README).
-inline constexpr float kLeastMapRoughness = 0.4f;
+/// From this roughness on, maps of a few places, set right by gathered rays, tell more of a lobe than the rays of a
+/// usual picture (README).
+inline constexpr float kLeastMapRoughness = 0.7f;
 /// The least roughness that maps are read for in this environment; above 1: none. Lobes narrower than a split-off light
 /// find it by rays (is_wide_for), and maps have no such lights.
 float least_map_roughness(const Environment& environment);
 /// With so many camera rays a pixel, their own rays are nearer to the truth than maps.
-inline constexpr int kTooManySamplesForMaps = 512;
+inline constexpr int kTooManySamplesForMaps = 128;
 
 /// Mixes of maps are blended from corner to corner of smooth surfaces, as solved light is. Thread-safe.
 class LightMapGloss {

@@ -26,6 +26,21 @@ SceneDescription matt(SceneDescription scene) {
     return scene;
 }
 
+/// So few leaves that their light is checked, unless it is gathered.
+SceneDescription young(SceneDescription scene) {
+    scene.name += ", 2,000 leaves";
+    scene.trees[0].source.leaves = 2000;
+    return scene;
+}
+
+/// One trunk of several, close by.
+SceneDescription at_a_trunk(SceneDescription scene) {
+    scene.name += ", a trunk close by";
+    scene.camera.position = scene.trees[0].placement.at + glm::dvec3(0, 1.2, 2);
+    scene.camera.target = scene.trees[0].placement.at + glm::dvec3(0, 1.2, 0);
+    return scene;
+}
+
 /// Forty dim lamps all around, each a hundred-thousandth to a thousandth of the sun.
 SceneDescription lamp_lit(SceneDescription scene) {
     scene.name += ", 40 lamps";
@@ -48,6 +63,10 @@ std::vector<SkipCase> cases(int width, int height, const std::filesystem::path& 
          [](RenderOptions& o) { o.picture.skips.thin_relief = false; }},
         {"light maps that nothing reads", "light maps", matt(scenes[0]),
          [](RenderOptions& o) { o.skip_unread_light_maps = false; }},
+        {"light maps elsewhere than bark in view reads", "light maps elsewhere", at_a_trunk(scenes[2]),
+         [](RenderOptions& o) { o.skip_unread_light_maps = false; }},
+        {"paths that check what is gathered", "check of the leaves", young(scenes[0]),
+         [](RenderOptions& o) { o.skip_check_by_paths = false; }},
         {"weak lights", "", lamp_lit(scenes[0]), [](RenderOptions& o) { o.merge_weak_lights = false; }},
     };
 }
