@@ -117,6 +117,16 @@ TreeMaterial tree_material(const SceneMaterial& source, const glm::vec3& color_f
     if (material.alpha_texture && source.base_color.a < 1 && source.base_color.a > 0)
         material.alpha_cutoff /= source.base_color.a;
     const std::string name = "material '" + shown_name(source.name) + "'";
+    if (source.normal_texture) {
+        if (lies_alike(*source.normal_texture, source.base_color_texture.value_or(SceneTexture()))) {
+            material.normal_texture = source.normal_texture->color;
+            material.normal_scale = source.normal_scale;
+            material.wrap_u = source.normal_texture->wrap_u;
+            material.wrap_v = source.normal_texture->wrap_v;
+        } else {
+            notes.push_back(name + ": its texture of normals lies otherwise than its colours: it is left out");
+        }
+    }
     if (source.alpha_mode == AlphaMode::mask && !material.alpha_texture)
         notes.push_back(name + " has an alpha mask, but no texture with alpha: it is solid");
     if (source.alpha_mode == AlphaMode::blend)
@@ -126,7 +136,10 @@ TreeMaterial tree_material(const SceneMaterial& source, const glm::vec3& color_f
 }
 
 Tree read_foreign_tree(const GltfDocument& document, const ReadOptions& options, Progress& progress) {
-    return tree_from_scene(flatten(document, std::nullopt, progress), document.path(), options, progress);
+    MeshScene scene = flatten(document, std::nullopt, progress);
+    if (options.normal_textures)
+        read_gltf_normal_textures(document, scene, progress);
+    return tree_from_scene(std::move(scene), document.path(), options, progress);
 }
 
 namespace {

@@ -18,6 +18,8 @@ struct ReadOptions {
     double scale = 1;
     /// The file's +Z is up, as that of some OBJ files is, rather than +Y: the tree is turned about X.
     bool z_is_up = false;
+    /// Reads TreeMaterial::normal_texture of a glTF's opaque materials.
+    bool normal_textures = false;
 };
 
 /// Reads a .glb, .gltf or .obj. A file written by write_tree() gives back the same tree, bit for bit (with `options` at

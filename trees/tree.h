@@ -43,6 +43,10 @@ struct TreeMaterial {
     std::shared_ptr<const Image> height_texture;
     float height_depth_m = 0; ///< how much higher 1 is than 0 ...
     float height_tile_m = 0;  ///< ... where a tile of texture is this wide; 0 = everywhere
+    /// Bark's normals in the tangent frame, 0..1 for -1..1, green towards smaller v, in the base colour's texture
+    /// coordinates; null = none, or not asked for. Not written to files.
+    std::shared_ptr<const Image> normal_texture;
+    float normal_scale = 1; ///< times their slopes
 };
 
 enum class TreePartKind { foliage, bark };

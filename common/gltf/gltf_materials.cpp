@@ -31,8 +31,7 @@ class MaterialReader {
     SceneMaterial read(const tinygltf::Material& source, std::size_t index) {
         SceneMaterial material;
         material.name = source.name;
-        const std::string place =
-            "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + shown_name(source.name) + "'");
+        const std::string place = place_of(source, index);
         const auto& pbr = source.pbrMetallicRoughness;
         material.alpha_mode = source.alphaMode == "MASK"    ? AlphaMode::mask
                               : source.alphaMode == "BLEND" ? AlphaMode::blend
@@ -74,8 +73,7 @@ class MaterialReader {
         const auto& info = source.pbrMetallicRoughness.metallicRoughnessTexture;
         if (info.index < 0)
             return;
-        const std::string place =
-            "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + shown_name(source.name) + "'");
+        const std::string place = place_of(source, index);
         try {
             material.roughness_metallic_texture = texture({info.index, info.texCoord, info.extensions}, place);
         } catch (const LostImage& lost) {
@@ -84,7 +82,25 @@ class MaterialReader {
         }
     }
 
+    /// Of a material that was read.
+    void read_normal_texture(const tinygltf::Material& source, SceneMaterial& material, std::size_t index) {
+        const auto& info = source.normalTexture;
+        if (info.index < 0 || material.alpha_mode != AlphaMode::opaque)
+            return;
+        const std::string place = place_of(source, index);
+        try {
+            material.normal_texture = texture({info.index, info.texCoord, info.extensions}, place);
+            material.normal_scale = std::isfinite(info.scale) ? float(std::clamp(info.scale, -1e3, 1e3)) : 1.f;
+        } catch (const LostImage& lost) {
+            notes_.push_back(place + ": its texture of normals is " + lost.what + ": it is even");
+        }
+    }
+
   private:
+    static std::string place_of(const tinygltf::Material& source, std::size_t index) {
+        return "material " + std::to_string(index) + (source.name.empty() ? "" : " '" + shown_name(source.name) + "'");
+    }
+
     static float factor(double value, double low, double high) {
         return std::isfinite(value) ? float(std::clamp(value, low, high)) : float(high);
     }
@@ -273,6 +289,15 @@ void read_gltf_gloss_textures(const GltfDocument& document, MeshScene& scene, Pr
     for (std::size_t i = 0; i < std::min(sources.size(), scene.materials.size()); ++i) {
         progress.throw_if_stopped();
         reader.read_gloss_texture(sources[i], scene.materials[i], i);
+    }
+}
+
+void read_gltf_normal_textures(const GltfDocument& document, MeshScene& scene, Progress& progress) {
+    MaterialReader reader(document, scene.notes, PixelMeaning::data);
+    const auto& sources = document.model().materials;
+    for (std::size_t i = 0; i < std::min(sources.size(), scene.materials.size()); ++i) {
+        progress.throw_if_stopped();
+        reader.read_normal_texture(sources[i], scene.materials[i], i);
     }
 }
 

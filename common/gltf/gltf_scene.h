@@ -16,5 +16,7 @@ MeshScene flatten(const GltfDocument& document, std::optional<glm::dvec3> origin
 /// Reads what flatten() leaves out: SceneMaterial::roughness_metallic_texture of the scene's materials. One in a format
 /// that can't be decoded is noted.
 void read_gltf_gloss_textures(const GltfDocument& document, MeshScene& scene, Progress& progress = silent_progress());
+/// And SceneMaterial::normal_texture, of opaque materials: leaves show none.
+void read_gltf_normal_textures(const GltfDocument& document, MeshScene& scene, Progress& progress = silent_progress());
 
 } // namespace kokage

@@ -4,6 +4,11 @@
 
 namespace kokage {
 
+bool lies_alike(const SceneTexture& a, const SceneTexture& b) {
+    return a.texture_coordinates == b.texture_coordinates && a.offset == b.offset && a.scale == b.scale &&
+           a.rotation == b.rotation && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v;
+}
+
 std::vector<glm::vec3> compute_normals(std::span<const glm::vec3> positions, std::span<const glm::uvec3> triangles) {
     std::vector<glm::dvec3> sums(positions.size(), glm::dvec3(0.0));
     for (const glm::uvec3& t : triangles) {

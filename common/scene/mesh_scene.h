@@ -24,6 +24,9 @@ struct SceneTexture {
     int texture_coordinates = 0;
 };
 
+/// Whether two textures are read in the same coordinates in the same way.
+bool lies_alike(const SceneTexture& a, const SceneTexture& b);
+
 enum class AlphaMode { opaque, mask, blend };
 
 struct SceneMaterial {
@@ -42,6 +45,9 @@ struct SceneMaterial {
     float index_of_refraction = 1.5f; ///< KHR_materials_ior; 0: a metal's mirror whatever the angle
     /// Roughness in the second channel and metal in the third, times the factors; read where it is asked for.
     std::optional<SceneTexture> roughness_metallic_texture;
+    /// Normals in the tangent frame, 0..1 for -1..1, green towards smaller v; read where it is asked for.
+    std::optional<SceneTexture> normal_texture;
+    float normal_scale = 1;                    ///< times their slopes
     std::optional<float> diffuse_transmission; ///< KHR_materials_diffuse_transmission
     glm::vec3 diffuse_transmission_color{1.f};
     float transmission = 0; ///< KHR_materials_transmission: clear, not diffuse

@@ -156,7 +156,7 @@ class SceneAssembly {
             if (is_new) {
                 loaded.tree = messages_.told_at(placed.pointer, [&] {
                     check_tree_source(source);
-                    return obtain_tree(source, progress_);
+                    return obtain_tree(source, progress_, true);
                 });
                 loaded.box = box_of(loaded.tree);
                 loaded.foot = foot_of(loaded.tree, loaded.box);

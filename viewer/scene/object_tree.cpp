@@ -19,12 +19,6 @@ constexpr glm::vec3 kGrey(0.5f);              ///< of what says nothing of its c
 constexpr double kPatchRadius = 0.025;        ///< of the object's diagonal: some hundreds of patches on a ball
 constexpr std::size_t kMostPieces = 1u << 20; ///< no more triangles come of splitting
 
-/// Texture coordinates that two textures share, or not.
-bool lies_alike(const SceneTexture& a, const SceneTexture& b) {
-    return a.texture_coordinates == b.texture_coordinates && a.offset == b.offset && a.scale == b.scale &&
-           a.rotation == b.rotation && a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v;
-}
-
 std::shared_ptr<const Image> channel_of(const Image& image, std::size_t channel) {
     auto single = std::make_shared<Image>(image.width, image.height, 1);
     for (std::size_t i = 0; i < single->pixels.size(); ++i)
@@ -121,6 +115,7 @@ MeshScene read_object(const std::filesystem::path& file, Progress& progress) {
     const GltfDocument document = GltfDocument::read(file, progress);
     MeshScene scene = flatten(document, std::nullopt, progress);
     read_gltf_gloss_textures(document, scene, progress);
+    read_gltf_normal_textures(document, scene, progress);
     return scene;
 }
 

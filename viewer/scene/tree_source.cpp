@@ -145,14 +145,15 @@ void check_tree_source(const TreeSource& source) {
     }
 }
 
-Tree obtain_tree(const TreeSource& source, Progress& progress) {
+Tree obtain_tree(const TreeSource& source, Progress& progress, bool normal_textures) {
     if (source.is_species())
         return grow(asked_species(source).parameters, progress);
     return read_tree(source.name,
                      {.foliage_materials = source.foliage,
                       .leaf_size = float(source.leaf_size),
                       .scale = source.scale,
-                      .z_is_up = source.up == "z"},
+                      .z_is_up = source.up == "z",
+                      .normal_textures = normal_textures},
                      progress);
 }
 

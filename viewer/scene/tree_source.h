@@ -41,7 +41,7 @@ void check_tree_source(const TreeSource& source);
 /// The species to grow, with --leaves and --set in its parameters. Throws InputError.
 Species asked_species(const TreeSource& source);
 
-/// Grows or loads it. Throws InputError, Stopped.
-Tree obtain_tree(const TreeSource& source, Progress& progress);
+/// Grows or loads it; `normal_textures`: ReadOptions'. Throws InputError, Stopped.
+Tree obtain_tree(const TreeSource& source, Progress& progress, bool normal_textures = false);
 
 } // namespace kokage
