@@ -41,7 +41,12 @@ struct SurfaceLook {
     TextureWrap wrap_u = TextureWrap::repeat, wrap_v = TextureWrap::repeat;
     Gloss gloss;
     bool smooth_normals = false; ///< bark: light with the interpolated normal, and blend solved radiance across patches
-    LookRelief relief;           ///< of closed, opaque surfaces; needs texture coordinates and normals
+    /// Normals in the tangent frame, 0..1 for -1..1, red towards larger u, green towards smaller v (glTF's); null =
+    /// none. They turn the normal by which sun, lamps and gloss are seen; the light that was solved does not turn with
+    /// them.
+    std::shared_ptr<const Image> normal_texture;
+    float normal_scale = 1; ///< times their slopes
+    LookRelief relief;      ///< of closed, opaque surfaces; needs texture coordinates and normals
 };
 
 /// A scene of patches with solved light as attributes. `reflection` knows nothing of trees or methods.

@@ -3,6 +3,7 @@
 #include "reflection/texture_lookup.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
 namespace kokage {
@@ -18,6 +19,9 @@ void check_look(const SurfaceLook& look) {
     const Image* color = look.base_color_texture.get();
     if (color && (color->channels < 3 || color->empty()))
         throw InputError("picture: a base colour texture has " + std::to_string(color->channels) +
+                         " channels; it needs at least 3");
+    if (look.normal_texture && (look.normal_texture->channels < 3 || look.normal_texture->empty()))
+        throw InputError("picture: a texture of normals has " + std::to_string(look.normal_texture->channels) +
                          " channels; it needs at least 3");
     if (look.gloss.roughness_texture && look.gloss.roughness_texture->empty())
         throw InputError("picture: a roughness texture has no texels");
@@ -47,6 +51,34 @@ glm::vec3 texture_factor(const SurfaceLook& look, const glm::vec2& uv) {
         if (look.mean_base_color[c] > 0)
             factor[c] = color[c] / look.mean_base_color[c];
     return factor;
+}
+
+/// The normal of a triangle's front as its look's texture turns it; `normal` where the triangle has no size in texture.
+glm::vec3 turned_normal(const PatchScene& patches, const glm::uvec3& corners, const SurfaceLook& look,
+                        const glm::vec2& uv, const glm::vec3& normal) {
+    const glm::vec3 p = patches.positions[corners.y] - patches.positions[corners.x],
+                    q = patches.positions[corners.z] - patches.positions[corners.x];
+    const glm::vec2 a = patches.uvs[corners.y] - patches.uvs[corners.x],
+                    b = patches.uvs[corners.z] - patches.uvs[corners.x];
+    const float handed = a.x * b.y - a.y * b.x < 0 ? -1.f : 1.f;
+    glm::vec3 along_u = handed * (b.y * p - a.y * q), along_v = handed * (a.x * q - b.x * p);
+    along_u -= glm::dot(along_u, normal) * normal;
+    along_v -= glm::dot(along_v, normal) * normal;
+    const float u_length = glm::length(along_u), v_length = glm::length(along_v);
+    const glm::vec3 local = 2.f * texture_color(*look.normal_texture, uv, look.wrap_u, look.wrap_v) - 1.f;
+    if (!(u_length > 0 && v_length > 0 && local.z > 0) || !std::isfinite(u_length + v_length))
+        return normal;
+    const glm::vec3 turned =
+        look.normal_scale * (local.x / u_length * along_u - local.y / v_length * along_v) + local.z * normal;
+    const float length = glm::length(turned);
+    return length > 1e-6f && std::isfinite(length) ? turned / length : normal;
+}
+
+/// Turned towards the viewer where it faces away, as far as that it is seen at a grazing angle.
+glm::vec3 seen_normal(const glm::vec3& normal, const glm::vec3& direction) {
+    constexpr float kGrazing = 0.02f;
+    const float cosine = -glm::dot(normal, direction);
+    return cosine >= kGrazing ? normal : glm::normalize(normal - (kGrazing - cosine) * direction);
 }
 
 } // namespace
@@ -131,6 +163,10 @@ void SurfacePoints::dress(SurfacePoint& at, const glm::vec3& direction) const {
         at.texture = texture_factor(*look, uv);
         at.optics.reflectance *= at.texture;
         at.optics.transmittance *= at.texture;
+    }
+    if (look->normal_texture && has_uvs && !at.relief) {
+        const float side = at.front ? 1.f : -1.f;
+        at.normal = seen_normal(side * turned_normal(patches, corners, *look, uv, side * at.normal), direction);
     }
     if (!look->gloss.is_matt()) {
         at.roughness =

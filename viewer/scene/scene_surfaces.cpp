@@ -86,8 +86,14 @@ std::vector<SurfaceLook> SceneSurfaces::looks(const Tree& tree, WorkReport& repo
     for (const TreePart& part : tree.parts) {
         SurfaceLook& look = looks.emplace_back(look_of(tree, part, means[part.material]));
         look.gloss = glosses_[part.material];
-        if (!part.uvs.empty())
-            look.relief = reliefs[part.material];
+        if (part.uvs.empty())
+            continue;
+        look.relief = reliefs[part.material];
+        const std::optional<ReliefDescription>& asked = surfaces_[part.material].finish.relief;
+        if (part.kind == TreePartKind::bark && !look.relief.heights && !(asked && asked->none)) {
+            look.normal_texture = tree.materials[part.material].normal_texture;
+            look.normal_scale = tree.materials[part.material].normal_scale;
+        }
     }
     warn_of_idle_reliefs(tree, looks, report);
     return looks;
