@@ -239,6 +239,33 @@ TEST(GltfScene, ReadsTexturesFromDataUrisBuffersAndFiles) {
     }
 }
 
+TEST(GltfScene, ReadsNormalTexturesOfOpaqueMaterialsWhenAsked) {
+    const std::vector<std::byte> png = small_png();
+    const std::vector<unsigned char> bytes(reinterpret_cast<const unsigned char*>(png.data()),
+                                           reinterpret_cast<const unsigned char*>(png.data()) + png.size());
+    GltfText file = textured({{"uri", "data:image/png;base64," + base64(bytes)}});
+    file.json["materials"][0]["normalTexture"] = {{"index", 0}, {"scale", 0.5}};
+    TemporaryFolder folder;
+    for (const std::string mode : {"OPAQUE", "MASK"}) {
+        file.json["materials"][0]["alphaMode"] = mode;
+        file.write(folder / "scene.gltf");
+        const GltfDocument document = GltfDocument::read(folder / "scene.gltf");
+        MeshScene scene = flatten(document);
+        EXPECT_FALSE(scene.materials[0].normal_texture) << "nobody asked";
+        read_gltf_normal_textures(document, scene);
+        ASSERT_EQ(scene.materials[0].normal_texture.has_value(), mode == "OPAQUE");
+    }
+    file.json["materials"][0]["alphaMode"] = "OPAQUE";
+    file.write(folder / "scene.gltf");
+    const GltfDocument document = GltfDocument::read(folder / "scene.gltf");
+    MeshScene scene = flatten(document);
+    read_gltf_normal_textures(document, scene);
+    EXPECT_FLOAT_EQ(scene.materials[0].normal_scale, 0.5f);
+    EXPECT_NEAR(scene.materials[0].normal_texture->color->at(0, 0)[0], 188.f / 255, 3e-3f)
+        << "numbers, not decoded from sRGB";
+    EXPECT_TRUE(lies_alike(*scene.materials[0].normal_texture, *scene.materials[0].base_color_texture));
+}
+
 TEST(GltfScene, AppliesTextureTransforms) {
     const std::vector<std::byte> png = small_png();
     const std::vector<unsigned char> bytes(reinterpret_cast<const unsigned char*>(png.data()),

@@ -1,7 +1,9 @@
+#include "common/scene/image_file.h"
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/stopwatch.h"
 #include "foliage/method.h"
+#include "tests/support/gltf_text.h"
 #include "tests/support/temporary_folder.h"
 #include "viewer/scene/assemble_scene.h"
 #include "viewer/scene/render_scene.h"
@@ -209,6 +211,33 @@ TEST(AssembleScene, ObjectsStandOnTheMiddleOfTheirFeet) {
     EXPECT_GT(scene.patches.patches.size(), 100u);
     for (const Patch& patch : scene.patches.patches)
         EXPECT_EQ(patch.kind, PatchKind::bark);
+}
+
+TEST(AssembleScene, NormalTexturesOfFilesAreShownUnlessReliefIsNone) {
+    const TemporaryFolder folder;
+    GltfText file = GltfText::triangle();
+    auto& primitive = file.json["meshes"][0]["primitives"][0];
+    primitive["attributes"]["TEXCOORD_0"] = file.uvs({0, 0, 1, 0, 0, 1});
+    primitive["material"] = 0;
+    Image bluish(1, 1, 3);
+    bluish.pixels = {0.5f, 0.5f, 1.f};
+    const std::vector<std::byte> png = encode_png(bluish);
+    file.json["images"] = {{{"mimeType", "image/png"}, {"bufferView", file.view(png)}}};
+    file.json["textures"] = {{{"source", 0}}};
+    file.json["materials"] = {{{"normalTexture", {{"index", 0}, {"scale", 0.5}}}}};
+    file.node({{"mesh", 0}});
+    file.scene({0});
+    file.write(folder / "slab.gltf");
+    SceneDescription description = constant_scene();
+    description.objects = {object_at(folder / "slab.gltf", {0, 0, 0}),
+                           object_at(folder / "slab.gltf", {3, 0, 0}, "even")};
+    description.materials["even"].relief = ReliefDescription{};
+    description.materials["even"].relief->none = true;
+    const AssembledScene scene = assembled(description);
+    ASSERT_EQ(scene.looks.size(), 2u);
+    ASSERT_TRUE(scene.looks[0].normal_texture);
+    EXPECT_FLOAT_EQ(scene.looks[0].normal_scale, 0.5f);
+    EXPECT_FALSE(scene.looks[1].normal_texture);
 }
 
 TEST(AssembleScene, FilesWithZUpAreTurned) {
