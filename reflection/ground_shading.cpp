@@ -4,12 +4,6 @@
 #include <cmath>
 
 namespace kokage {
-namespace {
-
-const glm::vec3 kUp(0, 1, 0);
-
-} // namespace
-
 GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
                              const Backdrop& backdrop, const GroundLook& look, const LightChoice& lights,
                              Progress& progress)
@@ -23,13 +17,20 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
             backdrop_irradiance_ += texel.irradiance * std::max(0.f, texel.direction.y);
 }
 
-GroundRadiance GroundShading::radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
-                                       SampleIndex sample, ShadingScratch& scratch) const {
+UnlitGround GroundShading::unlit(const glm::vec3& origin, const glm::vec3& direction, float distance) const {
     if (direction.y >= 0)
         return {};
     const glm::vec3 point = look_.point(origin, direction, distance);
-    return look_.mean_albedo() ? diffuse_plane(point, direction, distance, sample, scratch)
-                               : shadowed_backdrop(point, backdrop_.seen(direction), sample, scratch);
+    if (!look_.mean_albedo())
+        return shadowed_backdrop(point, backdrop_.seen(direction));
+    // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
+    const float clear = look_.clear(distance);
+    UnlitGround ground;
+    if (clear > 1e-4f)
+        ground = diffuse_plane(point, look_.albedo(point, direction, distance));
+    ground.total = clear * ground.total + (1 - clear) * look_.haze(direction);
+    ground.by_light *= clear;
+    return ground;
 }
 
 glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance,
@@ -37,47 +38,34 @@ glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& 
     if (direction.y >= 0)
         return glm::vec3(0.f);
     const glm::vec3 point = look_.point(origin, direction, distance);
-    return look_.mean_albedo() ? light_at(point, *look_.mean_albedo(), sample, scratch).total
-                               : shadowed_backdrop(point, backdrop_.remainder(direction), sample, scratch).total;
+    const UnlitGround ground = look_.mean_albedo() ? diffuse_plane(point, *look_.mean_albedo())
+                                                   : shadowed_backdrop(point, backdrop_.remainder(direction));
+    return ground.lit(light_from_lights(lights_, queries_, point, ground.scattering(), sample, scratch).scattered)
+        .total;
 }
 
-GroundRadiance GroundShading::light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
-                                       ShadingScratch& scratch) const {
-    const Scattering scattering{kUp, albedo, glm::vec3(0.f)};
-    const glm::vec3 direct = light_from_lights(lights_, queries_, point, scattering, sample, scratch).scattered;
-    return {albedo / kPi * light_->irradiance(point.x, point.z) + direct, direct, albedo};
+UnlitGround GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& albedo) const {
+    return {point, albedo / kPi * light_->irradiance(point.x, point.z), glm::vec3(1.f), albedo, albedo};
 }
 
-GroundRadiance GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance,
-                                            SampleIndex sample, ShadingScratch& scratch) const {
-    // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
-    const float clear = look_.clear(distance);
-    GroundRadiance radiance;
-    if (clear > 1e-4f)
-        radiance = light_at(point, look_.albedo(point, direction, distance), sample, scratch);
-    radiance.total = clear * radiance.total + (1 - clear) * look_.haze(direction);
-    radiance.direct *= clear;
-    return radiance;
-}
-
-GroundRadiance GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen, SampleIndex sample,
-                                                ShadingScratch& scratch) const {
+UnlitGround GroundShading::shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen) const {
     // What the backdrop shows below the horizon was lit by the backdrop's upper half. A camera at the height from which
     // it was photographed sees every point of the ground in the direction in which the photograph has it, so only the
     // light on it must change: times (light with the scene) / (light without it). Far from the scene that tends to 1
     // and is made 1, because there the photograph shows things that stand, not ground.
     const float near = std::clamp((12 - look_.away(point)) / 8, 0.f, 1.f);
+    UnlitGround ground{point, seen, glm::vec3(0.f), glm::vec3(0.f), glm::vec3(0.f)};
     if (near <= 0)
-        return {seen, glm::vec3(0.f), glm::vec3(0.f)};
-    const GroundRadiance light = light_at(point, glm::vec3(1.f), sample, scratch);
-    glm::vec3 ratio(1.f), direct(0.f);
+        return ground;
+    const float change = near * near * (3 - 2 * near);
+    const glm::vec3 irradiance = light_->irradiance(point.x, point.z);
     for (std::size_t c = 0; c < 3; ++c)
         if (backdrop_irradiance_[c] > 0) {
-            ratio[c] = kPi * light.total[c] / backdrop_irradiance_[c];
-            direct[c] = kPi * light.direct[c] / backdrop_irradiance_[c];
+            ground.total[c] *= 1 + change * (irradiance[c] / backdrop_irradiance_[c] - 1);
+            ground.by_light[c] = seen[c] * change * kPi / backdrop_irradiance_[c];
         }
-    const float change = near * near * (3 - 2 * near);
-    return {seen * (1.f + change * (ratio - 1.f)), seen * (change * direct), glm::vec3(0.f)};
+    ground.reflectance = glm::vec3(1.f);
+    return ground;
 }
 
 } // namespace kokage

@@ -14,28 +14,37 @@ struct GroundRadiance {
     glm::vec3 albedo{0.f}; ///< 0 where the backdrop plays the ground
 };
 
+/// A point of the ground before lights are tested there.
+struct UnlitGround {
+    glm::vec3 point{0.f};
+    glm::vec3 total{0.f};       ///< radiance without split-off lights
+    glm::vec3 by_light{0.f};    ///< times their light, scattered as `scattering` says: what it adds
+    glm::vec3 reflectance{0.f}; ///< of the lights' light; black: none need be tested
+    glm::vec3 albedo{0.f};
+
+    Scattering scattering() const { return {{0, 1, 0}, reflectance, glm::vec3(0.f)}; }
+    GroundRadiance lit(const glm::vec3& scattered) const {
+        return {total + by_light * scattered, by_light * scattered, albedo};
+    }
+};
+
 class GroundShading {
   public:
     /// All must outlive it.
     GroundShading(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
                   const Backdrop& backdrop, const GroundLook& look, const LightChoice& lights, Progress& progress);
 
-    /// Radiance of the ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
-    GroundRadiance radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
-                            ShadingScratch& scratch) const;
+    /// The ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
+    UnlitGround unlit(const glm::vec3& origin, const glm::vec3& direction, float distance) const;
     /// For rays that left the scene: of the mean soil, without air before it and without split-off lights
     /// in the backdrop, which are tested by themselves.
     glm::vec3 met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
                            ShadingScratch& scratch) const;
 
   private:
-    GroundRadiance diffuse_plane(const glm::vec3& point, const glm::vec3& direction, float distance, SampleIndex sample,
-                                 ShadingScratch& scratch) const;
+    UnlitGround diffuse_plane(const glm::vec3& point, const glm::vec3& albedo) const;
     /// `seen`: what the backdrop shows there.
-    GroundRadiance shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen, SampleIndex sample,
-                                     ShadingScratch& scratch) const;
-    GroundRadiance light_at(const glm::vec3& point, const glm::vec3& albedo, SampleIndex sample,
-                            ShadingScratch& scratch) const;
+    UnlitGround shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen) const;
 
     const RayQueries& queries_;
     const Backdrop& backdrop_;

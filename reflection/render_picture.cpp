@@ -5,6 +5,7 @@
 #include "reflection/final_gather.h"
 #include "reflection/gloss_in_view.h"
 #include "reflection/gloss_shading.h"
+#include "reflection/light_rays.h"
 #include "reflection/picture.h"
 #include "reflection/relief_surfaces.h"
 #include "reflection/sample_plan.h"
@@ -19,32 +20,72 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// Everything that a ray needs to become a colour.
+/// What a camera ray meets, before lights are tested there.
+struct UnlitHit {
+    enum class Kind : std::uint8_t { surroundings, surface, ground } kind = Kind::surroundings;
+    float distance = kInfinity;
+    SampleIndex sample;
+    SurfacePoint at;
+    UnlitGround ground;
+};
+
+/// Everything that rays need to become colours.
 struct Renderer {
     const RayQueries& queries;
     const Backdrop& backdrop;
+    const LightChoice& lights;
     const SurfaceShading& surfaces;
     const GroundLook& ground;
     const GroundShading& ground_light;
     const GlossShading& gloss;
-
     const ReliefSurfaces& relief;
 
-    SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, ShadingScratch& scratch) const {
-        const glm::vec3 direction = hit.direction;
-        const float ground_distance = ground.distance(origin, direction);
+    /// Adds rays to lights to `rays`, for `receiver`.
+    UnlitHit unlit(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, std::uint32_t receiver,
+                   LightRays& rays, ShadingScratch& scratch) const {
+        UnlitHit unlit;
+        unlit.sample = sample;
+        const float ground_distance = ground.distance(origin, hit.direction);
         if (hit.shows_surface(ground_distance)) {
-            const SurfacePoint at = surfaces.point(origin, hit);
-            SurfaceRadiance light = surfaces.radiance(at, direction, sample, scratch);
-            light.reflection += gloss.radiance(at, direction, light.total(), sample, scratch);
-            return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(), light);
+            unlit.kind = UnlitHit::Kind::surface;
+            unlit.distance = hit.hit.distance;
+            unlit.at = surfaces.point(origin, hit);
+            if (surfaces.has_pixel_shadows())
+                rays.add(receiver, lights, unlit.at.point, SurfaceShading::scattering(unlit.at, hit.direction), sample,
+                         scratch, unlit.at.relief);
+        } else if (ground_distance < kInfinity) {
+            unlit.kind = UnlitHit::Kind::ground;
+            unlit.distance = ground_distance;
+            unlit.ground = ground_light.unlit(origin, hit.direction, ground_distance);
+            rays.add(receiver, lights, unlit.ground.point, unlit.ground.scattering(), sample, scratch);
         }
-        if (!(ground_distance < kInfinity))
-            return SeenByRay::surroundings(backdrop.seen(direction));
-        const GroundRadiance light = ground_light.radiance(origin, direction, ground_distance, sample, scratch);
-        return SeenByRay::ground_at(light.albedo, ground_distance,
-                                    {.direct = light.direct, .indirect = light.total - light.direct});
+        return unlit;
     }
+
+    SeenByRay lit(const UnlitHit& unlit, const glm::vec3& direction, const LightFromLights& light,
+                  ShadingScratch& scratch) const {
+        if (unlit.kind == UnlitHit::Kind::surroundings)
+            return SeenByRay::surroundings(backdrop.seen(direction));
+        if (unlit.kind == UnlitHit::Kind::ground) {
+            const GroundRadiance lit = unlit.ground.lit(light.scattered);
+            return SeenByRay::ground_at(lit.albedo, unlit.distance,
+                                        {.direct = lit.direct, .indirect = lit.total - lit.direct});
+        }
+        SurfaceRadiance seen = surfaces.indirect(unlit.at);
+        seen.direct = light.scattered;
+        seen.reflection = light.reflected;
+        seen.reflection += gloss.radiance(unlit.at, direction, seen.total(), unlit.sample, scratch);
+        return SeenByRay::surface_at(unlit.at, unlit.distance, queries.scene(), seen);
+    }
+};
+
+/// Working space of one thread.
+struct DrawingScratch {
+    ShadingScratch shading;
+    LightRays light_rays;
+    std::vector<CameraHit> hits;
+    std::vector<UnlitHit> unlit;
+    std::vector<LightFromLights> light;
 };
 
 /// Draws squares of the picture: first rays, and as many more as the plan gives.
@@ -76,10 +117,10 @@ class PictureDrawing {
 
     /// Adds what the rays of `squares` see to `samples`, in their order. Rays of one call for a square are spread
     /// evenly over lights and lobes.
-    void trace(const std::vector<Square>& squares, ShadingScratch& scratch, std::vector<CameraSample>& samples) const {
+    void trace(const std::vector<Square>& squares, DrawingScratch& scratch, std::vector<CameraSample>& samples) const {
         constexpr std::size_t kAtOnce = 512;
-        std::vector<CameraHit> hits;
         for (std::size_t first = 0, last = 0; first < squares.size(); first = last) {
+            std::vector<CameraHit>& hits = scratch.hits;
             hits.clear();
             const std::size_t before = samples.size();
             for (; last < squares.size() && hits.size() < kAtOnce; ++last) {
@@ -93,14 +134,23 @@ class PictureDrawing {
                 }
             }
             renderer_.relief.first_hits(hits);
-            std::size_t k = 0;
+            scratch.light_rays.clear();
+            scratch.unlit.clear();
             for (std::size_t i = first; i < last; ++i) {
                 const Square& square = squares[i];
                 const SquareRays rays(frame_, options_, square.x, square.y);
-                for (std::uint32_t s = square.begin; s < square.end; ++s, ++k)
-                    samples[before + k].seen =
-                        renderer_.seen(frame_.position, hits[k], rays.index(s, square.begin, square.end), scratch);
+                for (std::uint32_t s = square.begin; s < square.end; ++s) {
+                    const std::size_t k = scratch.unlit.size();
+                    scratch.unlit.push_back(renderer_.unlit(frame_.position, hits[k],
+                                                            rays.index(s, square.begin, square.end), std::uint32_t(k),
+                                                            scratch.light_rays, scratch.shading));
+                }
             }
+            scratch.light.assign(hits.size(), {});
+            scratch.light_rays.trace(renderer_.queries, scratch.light);
+            for (std::size_t k = 0; k < hits.size(); ++k)
+                samples[before + k].seen =
+                    renderer_.lit(scratch.unlit[k], hits[k].direction, scratch.light[k], scratch.shading);
         }
     }
 
@@ -112,7 +162,7 @@ class PictureDrawing {
         const int rows = (options_.height + kStep - 1) / kStep, columns = (options_.width + kStep - 1) / kStep;
         std::vector<double> spreads(std::size_t(rows) * std::size_t(columns));
         parallel_blocks(std::size_t(rows), 4, [&](std::size_t begin, std::size_t end) {
-            ShadingScratch scratch;
+            DrawingScratch scratch;
             std::vector<CameraSample> samples;
             std::vector<Square> squares;
             for (std::size_t row = begin; row < end; ++row) {
@@ -134,7 +184,7 @@ class PictureDrawing {
     void draw_band(Film& film, int band, const SamplePlan& plan) const {
         const int columns = options_.width + 2, first_row = film.first_row(band), rows = film.end_row(band) - first_row;
         const auto first = std::size_t(first_);
-        ShadingScratch scratch;
+        DrawingScratch scratch;
         std::vector<Square> squares;
         for (int row = 0; row < rows; ++row)
             for (int x = 0; x < columns; ++x)
@@ -204,7 +254,7 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
                        progress, report);
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress, report);
     gather_for_camera(scene, relief, frame, options, incoming, environment, surfaces, gloss, progress, report);
-    const Renderer renderer{queries, backdrop, surfaces, ground, ground_light, gloss, relief};
+    const Renderer renderer{queries, backdrop, lights, surfaces, ground, ground_light, gloss, relief};
 
     Picture picture = PictureDrawing(renderer, frame, options).draw(progress);
     picture.report = report;

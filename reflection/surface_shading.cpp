@@ -27,12 +27,17 @@ void leave_out_hidden(const ReliefPoint& relief, ShadingScratch& scratch) {
 
 } // namespace
 
-LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
-                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch,
-                                  const ReliefPoint* relief) {
+void choose_light_rays(const LightChoice& lights, const glm::vec3& point, const Scattering& scattering,
+                       SampleIndex sample, ShadingScratch& scratch, const ReliefPoint* relief) {
     lights.rays_at(point, scattering, sample, scratch.rays, scratch.weights);
     if (relief && !scratch.rays.empty())
         leave_out_hidden(*relief, scratch);
+}
+
+LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
+                                  const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch,
+                                  const ReliefPoint* relief) {
+    choose_light_rays(lights, point, scattering, sample, scratch, relief);
     const float near = queries.ray_offset();
     LightFromLights sum;
     for (const ShadowRay& ray : scratch.rays)
@@ -161,17 +166,24 @@ glm::vec3 SurfaceShading::indirect_on_relief(const SurfacePoint& at) const {
     return relief.openness * at.texture * mesh_light * turn + (1 - relief.openness) * at.optics.reflectance * walls;
 }
 
-SurfaceRadiance SurfaceShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
-                                         ShadingScratch& scratch) const {
+SurfaceRadiance SurfaceShading::indirect(const SurfacePoint& at) const {
     SurfaceRadiance result;
     result.indirect = at.relief ? indirect_on_relief(at) : at.texture * solved(at);
+    return result;
+}
+
+Scattering SurfaceShading::scattering(const SurfacePoint& at, const glm::vec3& direction) {
+    return {at.normal,   at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
+            at.roughness};
+}
+
+SurfaceRadiance SurfaceShading::radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
+                                         ShadingScratch& scratch) const {
+    SurfaceRadiance result = indirect(at);
     if (!pixel_shadows_)
         return result;
-    const Scattering scattering{
-        at.normal,   at.optics.reflectance, at.optics.transmittance, at.gloss, glm::reflect(direction, at.normal),
-        at.roughness};
     const LightFromLights lights =
-        light_from_lights(lights_, queries_, at.point, scattering, sample, scratch, at.relief);
+        light_from_lights(lights_, queries_, at.point, scattering(at, direction), sample, scratch, at.relief);
     result.direct = lights.scattered;
     result.reflection = lights.reflected;
     return result;

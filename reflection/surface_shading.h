@@ -27,7 +27,11 @@ struct LightFromLights {
     glm::vec3 scattered{0.f}, reflected{0.f}; ///< by the diffuse surface, and by its gloss
 };
 
-/// Traces the chosen lights' shadow rays and adds up what arrives. `relief`: that the point lies on; null: none.
+/// Chooses the rays from `point` to lights that relief doesn't hide, into `scratch.rays`. `relief`: that the point lies
+/// on; null: none.
+void choose_light_rays(const LightChoice& lights, const glm::vec3& point, const Scattering& scattering,
+                       SampleIndex sample, ShadingScratch& scratch, const ReliefPoint* relief);
+/// Traces them, each by itself, and adds up what arrives (many points': light_rays.h).
 LightFromLights light_from_lights(const LightChoice& lights, const RayQueries& queries, const glm::vec3& point,
                                   const Scattering& scattering, SampleIndex sample, ShadingScratch& scratch,
                                   const ReliefPoint* relief = nullptr);
@@ -59,6 +63,9 @@ class SurfaceShading {
     /// rest).
     SurfaceRadiance radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
                              ShadingScratch& scratch) const;
+    /// The parts of radiance(): all but what split-off lights send, and how the surface scatters what they do.
+    SurfaceRadiance indirect(const SurfacePoint& at) const;
+    static Scattering scattering(const SurfacePoint& at, const glm::vec3& direction);
     /// Else surfaces show the light that was solved, gloss in it as if it scattered.
     bool has_pixel_shadows() const { return pixel_shadows_; }
     /// The solution's, of all light: no ray is traced.
