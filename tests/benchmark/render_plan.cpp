@@ -14,9 +14,9 @@ RenderPlan render_plan(bool quick) {
                     .map_samples = 256};
     if (quick)
         return plan;
-    plan.width = 640;
-    plan.height = 480;
-    plan.every_row = plan.every_column = 10;
+    plan.width = 960;
+    plan.height = 720;
+    plan.every_row = plan.every_column = 15; // as many pixels as the quick plan's
     plan.truth_samples = 32768;
     plan.fast.push_back({fine, 64});
     plan.traced.push_back(4096);
