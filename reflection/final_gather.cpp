@@ -40,17 +40,17 @@ class Gathering {
               const SurfaceShading& surfaces, const GlossShading& gloss)
         : scene_(scene), relief_(relief), frame_(frame), options_(options), incoming_(incoming),
           environment_(environment), surfaces_(surfaces), gloss_(gloss), flat_(flat_patches(*scene.patches)),
-          directions_(environment, incoming.has_ground()), rays_(std::uint32_t(gather_rays_of(options))) {}
+          directions_(environment, incoming.has_ground()) {}
 
     /// By one ray a pixel of a row: of what the camera sees and `sums` knows too little of.
     GatheredRow row(int pass, int y, const GatheredSums& sums) const {
         std::vector<PathNumbers> numbers;
         std::vector<CameraHit> hits;
-        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers));
+        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers + std::uint64_t(pass)));
         for (int x = 0; x < options_.width; ++x) {
-            // Numbers in a row fill squares of the picture, and a pixel's rays are in a row.
-            numbers.emplace_back(seed,
-                                 rays_ * place_on_curve(std::uint32_t(x), std::uint32_t(y)) + std::uint32_t(pass));
+            // Numbers in a row fill squares of the picture. (Numbers in a row for all passes of a pixel would leave the
+            // first pass, after which large patches have enough, with numbers from one part of the unit square.)
+            numbers.emplace_back(seed, place_on_curve(std::uint32_t(x), std::uint32_t(y)));
             const glm::vec2 place = numbers.back().pair();
             hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
         }
@@ -120,7 +120,6 @@ class Gathering {
     const GlossShading& gloss_;
     const std::vector<std::uint8_t> flat_;
     const GatherDirections directions_;
-    std::uint32_t rays_; ///< a pixel
 };
 
 } // namespace

@@ -100,6 +100,26 @@ TEST(FinalGather, GathersTheWholeOfALargePatch) {
     EXPECT_NEAR(gathered / truth, 1, 0.02);
 }
 
+TEST(FinalGather, SpreadsTheRaysOfPatchesThatHaveEnoughAfterOnePass) {
+    // Under a sky that is bright on one side; what comes from there and from the other sums up to 1.1.
+    PatchScene patches;
+    patches.optics = {{glm::vec3(0.6f), glm::vec3(0.f)}};
+    add_rectangle(patches, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
+    const ShadedScene scene = evenly_shaded(patches, glm::vec3(0.2f));
+    Environment sky;
+    sky.remainder = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            std::fill_n(sky.remainder.at(x, y), 3, float(1.1 + pixel_direction(x, y, 64, 32).x));
+    PictureOptions options = without_ground(64, 64, 8);
+    for (const int rays : {2, 8, 16}) {
+        options.gather_rays = rays; // after the first of so many passes there are rays enough
+        const Picture picture = render_picture(scene, RayQueries(patches), sky, camera_at({0, 6, 0}, {0, 0, 0}, 0.2f),
+                                               options, silent_progress());
+        EXPECT_NEAR(brightness(picture.radiance) / (0.6 * 1.1), 1, 0.01) << rays;
+    }
+}
+
 TEST(FinalGather, LightsWhatWasSolvedAsBlackAlsoByFewRays) {
     HalfHiddenLeaf leaf;
     leaf.scene.indirect_front[0] = glm::vec3(0.f);
