@@ -16,6 +16,22 @@ namespace {
 constexpr int kMostBands = 10;
 constexpr std::size_t kMostCount = sh_count(kMostBands);
 constexpr int kLobeSteps = 128;
+constexpr float kLeastOfBand = 0.002f; ///< of a lobe's first: wide lobes leave little of fine bands
+
+/// In eight sums, which a compiler may keep in one register.
+float dot(const float* a, const float* b, std::size_t count) {
+    std::array<float, 8> sums{};
+    std::size_t j = 0;
+    for (; j + 8 <= count; j += 8)
+        for (std::size_t k = 0; k < 8; ++k)
+            sums[k] += a[j + k] * b[j + k];
+    float rest = 0;
+    for (; j < count; ++j)
+        rest += a[j] * b[j];
+    for (const float sum : sums)
+        rest += sum;
+    return rest;
+}
 
 void check(const LightMapsOfPatches& maps, std::size_t patches) {
     const auto fail = [](const std::string& what) { throw InputError("picture: the scene's light maps " + what); };
@@ -152,26 +168,25 @@ bool LightMapGloss::lights(const SurfacePoint& at) const {
 glm::vec3 LightMapGloss::radiance(const SurfacePoint& at, const glm::vec3& mirrored) const {
     const LightPlaces from = surfaces_.places(at);
     const HorizonLookup lobe = horizon_.lookup(at.normal, mirrored, double(at.roughness));
-    const int bands = scene_.light_maps.maps.front().bands;
+    int bands = scene_.light_maps.maps.front().bands;
     std::array<float, kMostBands> of_bands;
     fall_off(lobe.parameter, {of_bands.data(), std::size_t(bands)});
+    while (bands > 1 && std::abs(of_bands[std::size_t(bands - 1)]) < kLeastOfBand * of_bands[0])
+        --bands;
+    const std::size_t count = sh_count(bands);
     std::array<float, kMostCount> harmonics;
-    evaluate_sh(bands, lobe.directions[0], {harmonics.data(), count_});
+    evaluate_sh(bands, lobe.directions[0], {harmonics.data(), count});
     for (int l = 0; l < bands; ++l)
         for (std::size_t j = sh_index(l, -l); j <= sh_index(l, l); ++j)
             harmonics[j] *= of_bands[std::size_t(l)];
-    std::array<float, 3 * kMostCount> mix{};
-    glm::vec3 factor(0.f);
+    glm::vec3 sum(0.f), factor(0.f);
     for (std::size_t k = 0; k < 3; ++k) {
-        const float* values = values_.data() + (slot_[from.places[k]] - 1) * 3 * count_;
-        factor += from.weights[glm::length_t(k)] * factors_[slot_[from.places[k]] - 1];
-        for (std::size_t j = 0; j < 3 * count_; ++j)
-            mix[j] += from.weights[glm::length_t(k)] * values[j];
+        const std::uint32_t slot = slot_[from.places[k]] - 1;
+        const float weight = from.weights[glm::length_t(k)];
+        factor += weight * factors_[slot];
+        for (std::size_t c = 0; c < 3; ++c)
+            sum[glm::length_t(c)] += weight * dot(harmonics.data(), values_.data() + (3 * slot + c) * count_, count);
     }
-    glm::vec3 sum(0.f);
-    for (std::size_t c = 0; c < 3; ++c)
-        for (std::size_t j = 0; j < count_; ++j)
-            sum[glm::length_t(c)] += harmonics[j] * mix[c * count_ + j];
     return lobe.share * factor * glm::max(sum, glm::vec3(0.f));
 }
 
