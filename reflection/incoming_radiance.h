@@ -21,7 +21,8 @@ class IncomingRadiance {
                                    ShadingScratch& scratch) const;
 
     float ray_offset() const { return queries_.ray_offset(); }
-    bool has_ground() const { return ground_.height().has_value(); }
+    /// Else the surroundings' lower half plays the ground.
+    bool has_ground() const { return ground_.mean_albedo().has_value(); }
     /// Where a ray meets the ground; infinite if it doesn't.
     float ground_distance(const glm::vec3& origin, const glm::vec3& direction) const {
         return ground_.distance(origin, direction);

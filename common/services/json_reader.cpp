@@ -124,8 +124,9 @@ void JsonReader::check_keys(std::initializer_list<const char*> known) const {
         if (std::find(words.begin(), words.end(), key) != words.end())
             continue;
         const std::optional<std::string> near = nearest_word(key, words);
-        fail("nothing is called '" + shown_name(key) + "' here; " +
-             (near ? "did you mean '" + *near + "'?" : "there are: " + list));
+        inner(value, key)
+            .fail("nothing is called '" + shown_name(key) + "' here; " +
+                  (near ? "did you mean '" + *near + "'? There are: " : "there are: ") + list);
     }
 }
 

@@ -27,6 +27,8 @@ class JsonReader {
 
     /// "FILE: /trees/2/leaves: WHAT".
     [[noreturn]] void fail(const std::string& what) const;
+    /// The value, or what kind of value it is, for such a message.
+    std::string found() const;
 
     bool is_object() const { return value_->is_object(); }
     bool is_array() const { return value_->is_array(); }
@@ -62,7 +64,6 @@ class JsonReader {
 
   private:
     JsonReader inner(const nlohmann::ordered_json& value, const std::string& token) const;
-    std::string found() const;
 
     const nlohmann::ordered_json* value_;
     std::string file_, pointer_;

@@ -11,6 +11,8 @@ namespace kokage {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr int kMostLeaves = 2000000; ///< as the parameter 'leaves' of species takes
+
 constexpr double kFarthest = 10000;
 constexpr std::uint64_t kLargestSpeciesFile = 1 << 20;
 
@@ -92,7 +94,7 @@ void read_species_source(const JsonReader& json, const JsonReader& name, const S
     }
     at(name, [&] { asked_species(tree.source); });
     if (const auto leaves = json.find("leaves")) {
-        tree.source.leaves = leaves->integer(0, std::numeric_limits<int>::max());
+        tree.source.leaves = leaves->integer(1, kMostLeaves);
         at(*leaves, [&] { asked_species(tree.source); });
     }
     if (const auto seed = json.find("seed"))

@@ -21,7 +21,7 @@ void check_version(const JsonReader& json) {
         json.fail("'kokage_scene' is missing, so it is no scene; a scene begins {\"kokage_scene\": 1, ..." +
                   std::string(kHowToStart));
     if (!version->is_number() || version->number(-1e300, 1e300) != 1)
-        version->fail("it is not 1, the one version of scenes that is known");
+        version->fail("found " + version->found() + " where 1 is needed, the one version of scenes that is known");
 }
 
 /// Names of materials that trees and objects wear must stand in `materials`; those that stand there should be worn.

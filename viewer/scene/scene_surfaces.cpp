@@ -152,7 +152,7 @@ void SceneSurfaces::report_skips(WorkReport& report) const {
             names += (unused++ == 0 ? "'" : ", '") + shown_name(name) + "'";
     if (unused > 0)
         report.skips.push_back(
-            {counted(unused, "material", "materials"), "nothing wears " + names, "their textures were not loaded"});
+            {counted(unused, "material", "materials"), "nothing wears " + names, "loading their textures"});
 }
 
 } // namespace kokage
