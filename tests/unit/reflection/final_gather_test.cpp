@@ -13,6 +13,16 @@ double brightness(const Image& image) {
     return (mean.r + mean.g + mean.b) / 3;
 }
 
+/// 1.1 in the mean, bright towards +X alone.
+Environment one_sided_sky() {
+    Environment sky;
+    sky.remainder = Image(64, 32, 3);
+    for (int y = 0; y < 32; ++y)
+        for (int x = 0; x < 64; ++x)
+            std::fill_n(sky.remainder.at(x, y), 3, float(1.1 + pixel_direction(x, y, 64, 32).x));
+    return sky;
+}
+
 TEST(FinalGather, GivesWhatIsSeenOfALeafItsOwnLight) {
     const HalfHiddenLeaf leaf;
     const double truth = brightness(leaf.traced(256));
@@ -50,11 +60,7 @@ TEST(FinalGather, GivesBentLeavesNoCommonLobe) {
     scene.looks[0].gloss.normal_reflectance = glm::vec3(0.5f);
     scene.looks[0].gloss.roughness = 0.3f;
     scene.triangle_look.assign(patches.triangles.size(), 0);
-    Environment sky;
-    sky.remainder = Image(64, 32, 3);
-    for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 64; ++x)
-            std::fill_n(sky.remainder.at(x, y), 3, float(1.1 + pixel_direction(x, y, 64, 32).x));
+    const Environment sky = one_sided_sky();
     PictureOptions options = without_ground(16, 16, 16);
     Camera camera = camera_at({0, 6, 0}, {0, 0.125f, 0}, 0.32f);
     camera.up = {0, 0, -1};
@@ -106,11 +112,7 @@ TEST(FinalGather, SpreadsTheRaysOfPatchesThatHaveEnoughAfterOnePass) {
     patches.optics = {{glm::vec3(0.6f), glm::vec3(0.f)}};
     add_rectangle(patches, {-1, 0, 1}, {2, 0, 0}, {0, 0, -2}, 0);
     const ShadedScene scene = evenly_shaded(patches, glm::vec3(0.2f));
-    Environment sky;
-    sky.remainder = Image(64, 32, 3);
-    for (int y = 0; y < 32; ++y)
-        for (int x = 0; x < 64; ++x)
-            std::fill_n(sky.remainder.at(x, y), 3, float(1.1 + pixel_direction(x, y, 64, 32).x));
+    const Environment sky = one_sided_sky();
     PictureOptions options = without_ground(64, 64, 8);
     for (const int rays : {2, 8, 16}) {
         options.gather_rays = rays; // after the first of so many passes there are rays enough
