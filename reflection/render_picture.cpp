@@ -1,6 +1,7 @@
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "reflection/backdrop.h"
+#include "reflection/camera_ray_shading.h"
 #include "reflection/camera_rays.h"
 #include "reflection/final_gather.h"
 #include "reflection/gloss_in_view.h"
@@ -13,71 +14,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace kokage {
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-/// What a camera ray meets, before lights are tested there.
-struct UnlitHit {
-    enum class Kind : std::uint8_t { surroundings, surface, ground } kind = Kind::surroundings;
-    float distance = kInfinity;
-    SampleIndex sample;
-    SurfacePoint at;
-    UnlitGround ground;
-};
-
-/// Everything that rays need to become colours.
-struct Renderer {
-    const RayQueries& queries;
-    const Backdrop& backdrop;
-    const LightChoice& lights;
-    const SurfaceShading& surfaces;
-    const GroundLook& ground;
-    const GroundShading& ground_light;
-    const GlossShading& gloss;
-    const ReliefSurfaces& relief;
-
-    /// Adds rays to lights to `rays`, for `receiver`.
-    UnlitHit unlit(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, std::uint32_t receiver,
-                   LightRays& rays, ShadingScratch& scratch) const {
-        UnlitHit unlit;
-        unlit.sample = sample;
-        const float ground_distance = ground.distance(origin, hit.direction);
-        if (hit.shows_surface(ground_distance)) {
-            unlit.kind = UnlitHit::Kind::surface;
-            unlit.distance = hit.hit.distance;
-            unlit.at = surfaces.point(origin, hit);
-            if (surfaces.has_pixel_shadows())
-                rays.add(receiver, lights, unlit.at.point, SurfaceShading::scattering(unlit.at, hit.direction), sample,
-                         scratch, unlit.at.relief);
-        } else if (ground_distance < kInfinity) {
-            unlit.kind = UnlitHit::Kind::ground;
-            unlit.distance = ground_distance;
-            unlit.ground = ground_light.unlit(origin, hit.direction, ground_distance);
-            rays.add(receiver, lights, unlit.ground.point, unlit.ground.scattering(), sample, scratch);
-        }
-        return unlit;
-    }
-
-    SeenByRay lit(const UnlitHit& unlit, const glm::vec3& direction, const LightFromLights& light,
-                  ShadingScratch& scratch) const {
-        if (unlit.kind == UnlitHit::Kind::surroundings)
-            return SeenByRay::surroundings(backdrop.seen(direction));
-        if (unlit.kind == UnlitHit::Kind::ground) {
-            const GroundRadiance lit = unlit.ground.lit(light.scattered);
-            return SeenByRay::ground_at(lit.albedo, unlit.distance,
-                                        {.direct = lit.direct, .indirect = lit.total - lit.direct});
-        }
-        SurfaceRadiance seen = surfaces.indirect(unlit.at);
-        seen.direct = light.scattered;
-        seen.reflection = light.reflected;
-        seen.reflection += gloss.radiance(unlit.at, direction, seen.total(), unlit.sample, scratch);
-        return SeenByRay::surface_at(unlit.at, unlit.distance, queries.scene(), seen);
-    }
-};
 
 /// Working space of one thread.
 struct DrawingScratch {
@@ -91,8 +30,8 @@ struct DrawingScratch {
 /// Draws squares of the picture: first rays, and as many more as the plan gives.
 class PictureDrawing {
   public:
-    PictureDrawing(const Renderer& renderer, const CameraFrame& frame, const PictureOptions& options)
-        : renderer_(renderer), frame_(frame), options_(options), first_(SamplePlan::first_samples(options.samples)) {}
+    PictureDrawing(const CameraRayShading& shading, const CameraFrame& frame, const PictureOptions& options)
+        : shading_(shading), frame_(frame), options_(options), first_(SamplePlan::first_samples(options.samples)) {}
 
     Picture draw(Progress& progress) const {
         Film film(options_, frame_);
@@ -133,7 +72,7 @@ class PictureDrawing {
                     hits.emplace_back().direction = sample.direction;
                 }
             }
-            renderer_.relief.first_hits(hits);
+            shading_.relief.first_hits(hits);
             scratch.light_rays.clear();
             scratch.unlit.clear();
             for (std::size_t i = first; i < last; ++i) {
@@ -141,16 +80,16 @@ class PictureDrawing {
                 const SquareRays rays(frame_, options_, square.x, square.y);
                 for (std::uint32_t s = square.begin; s < square.end; ++s) {
                     const std::size_t k = scratch.unlit.size();
-                    scratch.unlit.push_back(renderer_.unlit(frame_.position, hits[k],
-                                                            rays.index(s, square.begin, square.end), std::uint32_t(k),
-                                                            scratch.light_rays, scratch.shading));
+                    scratch.unlit.push_back(shading_.unlit(frame_.position, hits[k],
+                                                           rays.index(s, square.begin, square.end), std::uint32_t(k),
+                                                           scratch.light_rays, scratch.shading));
                 }
             }
             scratch.light.assign(hits.size(), {});
-            scratch.light_rays.trace(renderer_.queries, scratch.light);
+            scratch.light_rays.trace(shading_.queries, scratch.light);
             for (std::size_t k = 0; k < hits.size(); ++k)
                 samples[before + k].seen =
-                    renderer_.lit(scratch.unlit[k], hits[k].direction, scratch.light[k], scratch.shading);
+                    shading_.lit(scratch.unlit[k], hits[k].direction, scratch.light[k], scratch.shading);
         }
     }
 
@@ -227,7 +166,7 @@ class PictureDrawing {
         return std::sqrt(sum / count);
     }
 
-    const Renderer& renderer_;
+    const CameraRayShading& shading_;
     const CameraFrame& frame_;
     const PictureOptions& options_;
     int first_;
@@ -254,9 +193,9 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
                        progress, report);
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress, report);
     gather_for_camera(scene, relief, frame, options, incoming, environment, surfaces, gloss, progress, report);
-    const Renderer renderer{queries, backdrop, lights, surfaces, ground, ground_light, gloss, relief};
+    const CameraRayShading shading{queries, backdrop, lights, surfaces, ground, ground_light, gloss, relief};
 
-    Picture picture = PictureDrawing(renderer, frame, options).draw(progress);
+    Picture picture = PictureDrawing(shading, frame, options).draw(progress);
     picture.report = report;
     return picture;
 }
