@@ -1,11 +1,12 @@
 #include "trees/tree_extras.h"
 
 #include "common/services/random.h"
+#include "trees/extras_reader.h"
 #include "trees/foreign_tree.h"
+#include "trees/height_extras.h"
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
@@ -14,7 +15,6 @@ namespace kokage {
 namespace {
 
 constexpr std::uint32_t kNone = ~0u;
-constexpr std::uint64_t kMostHeights = 1u << 15; ///< along a side of an image
 
 /// A running hash of arrays' bits.
 class Fingerprint {
@@ -108,92 +108,6 @@ std::string fingerprint_of(const Arrays& a, const Tree& tree) {
     }
     return fingerprint.text();
 }
-
-/// Reads the members of `extras.kokage`; whatever is missing or of the wrong kind makes `good` false.
-class ExtrasReader {
-  public:
-    explicit ExtrasReader(const GltfDocument& document) : document_(document) {}
-    bool good = true;
-
-    const nlohmann::json& member(const nlohmann::json& object, const char* name) {
-        static const nlohmann::json none;
-        if (object.is_object())
-            if (const auto found = object.find(name); found != object.end())
-                return *found;
-        good = false;
-        return none;
-    }
-    /// An array; tinygltf writes empty ones as null, so that is empty as well.
-    const nlohmann::json& list(const nlohmann::json& object, const char* name) {
-        static const nlohmann::json none = nlohmann::json::array();
-        const auto found = object.is_object() ? object.find(name) : object.end();
-        if (!object.is_object() || found == object.end() || found->is_null())
-            return none;
-        good = good && found->is_array();
-        return found->is_array() ? *found : none;
-    }
-    std::uint64_t count(const nlohmann::json& object, const char* name) {
-        const nlohmann::json& value = member(object, name);
-        good = good && value.is_number_unsigned();
-        return good ? value.get<std::uint64_t>() : 0;
-    }
-    bool flag(const nlohmann::json& object, const char* name) {
-        const nlohmann::json& value = member(object, name);
-        good = good && value.is_boolean();
-        return good && value.get<bool>();
-    }
-    /// Finite.
-    float number(const nlohmann::json& object, const char* name) {
-        const nlohmann::json& value = member(object, name);
-        good = good && value.is_number() && std::isfinite(value.get<float>());
-        return good ? value.get<float>() : 0.f;
-    }
-    std::string text(const nlohmann::json& object, const char* name) {
-        const nlohmann::json& value = member(object, name);
-        good = good && value.is_string();
-        return good ? value.get<std::string>() : "";
-    }
-    std::vector<std::uint32_t> integers(const nlohmann::json& object, const char* name, std::uint64_t wanted) {
-        const int accessor = index(object, name, wanted, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_UNSIGNED_INT);
-        return accessor < 0 ? std::vector<std::uint32_t>() : document_.unsigned_integers(accessor);
-    }
-    template <typename Vector>
-    std::vector<Vector> vectors(const nlohmann::json& object, const char* name, std::uint64_t wanted) {
-        constexpr int components = int(Vector::length());
-        const int type = components == 3 ? TINYGLTF_TYPE_VEC3 : TINYGLTF_TYPE_VEC4;
-        const int accessor = index(object, name, wanted, type, TINYGLTF_COMPONENT_TYPE_FLOAT);
-        if (accessor < 0)
-            return {};
-        const std::vector<float> values = document_.floats(accessor, components);
-        std::vector<Vector> result(wanted);
-        for (std::size_t i = 0; i < result.size(); ++i)
-            for (std::size_t c = 0; c < std::size_t(components); ++c)
-                result[i][c] = values[i * std::size_t(components) + c];
-        return result;
-    }
-    std::vector<float> floats(const nlohmann::json& object, const char* name, std::uint64_t wanted) {
-        const int accessor = index(object, name, wanted, TINYGLTF_TYPE_SCALAR, TINYGLTF_COMPONENT_TYPE_FLOAT);
-        return accessor < 0 ? std::vector<float>() : document_.floats(accessor, 1);
-    }
-
-  private:
-    /// The accessor that a member names, if it is as long and of the type that is wanted; -1 if not, or if nothing is
-    /// wanted.
-    int index(const nlohmann::json& object, const char* name, std::uint64_t wanted, int type, int component) {
-        if (wanted == 0)
-            return -1;
-        const nlohmann::json& value = member(object, name);
-        good = good && value.is_number_unsigned() && value.get<std::uint64_t>() < document_.model().accessors.size();
-        if (!good)
-            return -1;
-        const auto accessor = value.get<std::size_t>();
-        const tinygltf::Accessor& found = document_.model().accessors[accessor];
-        good = found.count == wanted && found.type == type && found.componentType == component;
-        return good ? int(accessor) : -1;
-    }
-
-    const GltfDocument& document_;
-};
 
 void read_skeleton(ExtrasReader& reader, const nlohmann::json& extras, Arrays& a) {
     const nlohmann::json& skeleton = reader.member(extras, "skeleton");
@@ -309,44 +223,9 @@ bool read_part(ExtrasReader& reader, const nlohmann::json& entry, const MeshScen
     return reader.good;
 }
 
-/// Heights of bark: images of one channel, which materials share.
-std::vector<std::shared_ptr<const Image>> read_heights(ExtrasReader& reader, const nlohmann::json& extras) {
-    std::vector<std::shared_ptr<const Image>> images;
-    for (const nlohmann::json& entry : reader.list(extras, "heights")) {
-        const std::uint64_t width = reader.count(entry, "width"), height = reader.count(entry, "height");
-        reader.good = reader.good && width > 0 && height > 0 && width <= kMostHeights && height <= kMostHeights;
-        if (!reader.good)
-            return {};
-        auto image = std::make_shared<Image>();
-        image->width = int(width);
-        image->height = int(height);
-        image->channels = 1;
-        image->pixels = reader.floats(entry, "values", width * height);
-        for (const float value : image->pixels)
-            reader.good = reader.good && std::isfinite(value);
-        images.push_back(std::move(image));
-    }
-    return images;
-}
-
-void read_relief(ExtrasReader& reader, const nlohmann::json& entry,
-                 const std::vector<std::shared_ptr<const Image>>& heights, TreeMaterial& material) {
-    const auto relief = entry.is_object() ? entry.find("relief") : entry.end();
-    if (!entry.is_object() || relief == entry.end())
-        return;
-    const std::uint64_t image = reader.count(*relief, "heights");
-    const float depth = reader.number(*relief, "depth"), tile = reader.number(*relief, "tile");
-    reader.good = reader.good && image < heights.size() && depth >= 0 && tile >= 0;
-    if (!reader.good)
-        return;
-    material.height_texture = heights[image];
-    material.height_depth_m = depth;
-    material.height_tile_m = tile;
-}
-
 bool read_materials(ExtrasReader& reader, const nlohmann::json& extras, const MeshScene& scene, Tree& tree) {
     const nlohmann::json& materials = reader.list(extras, "materials");
-    const std::vector<std::shared_ptr<const Image>> heights = read_heights(reader, extras);
+    const BarkHeights heights = read_heights(reader, extras);
     if (!reader.good || materials.size() >= scene.materials.size() + 1)
         return false;
     std::vector<std::string> ignored;
@@ -406,14 +285,8 @@ nlohmann::json write_extras(GltfWriter& writer, const Tree& tree, const std::vec
                         {"centre", data(a.leaf_centre, "centre of leaf")},
                         {"branch", data(a.leaf_branch, "branch of leaf")}};
     extras["bark_patches"] = tree.bark_patch_count;
-    extras["heights"] = nlohmann::json::array();
-    std::map<std::shared_ptr<const Image>, std::size_t> heights;
-    for (const TreeMaterial& material : tree.materials)
-        if (const auto& image = material.height_texture;
-            image && !image->empty() && heights.try_emplace(image, heights.size()).second)
-            extras["heights"].push_back({{"width", image->width},
-                                         {"height", image->height},
-                                         {"values", data(image->pixels, "height of bark")}});
+    const BarkHeights heights = heights_of(tree.materials);
+    extras["heights"] = write_heights(writer, heights);
     extras["materials"] = nlohmann::json::array();
     for (const TreeMaterial& material : tree.materials) {
         nlohmann::json entry = {{"double_sided", material.double_sided},
@@ -421,9 +294,7 @@ nlohmann::json write_extras(GltfWriter& writer, const Tree& tree, const std::vec
         const glm::vec3& color = material.diffuse_transmission_color;
         if (material.diffuse_transmission >= 0)
             entry["diffuse_transmission"] = {material.diffuse_transmission, color.r, color.g, color.b};
-        if (const auto image = heights.find(material.height_texture); image != heights.end())
-            entry["relief"] = {
-                {"heights", image->second}, {"depth", material.height_depth_m}, {"tile", material.height_tile_m}};
+        write_relief(material, heights, entry);
         extras["materials"].push_back(std::move(entry));
     }
     extras["parts"] = nlohmann::json::array();
