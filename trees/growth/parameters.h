@@ -26,6 +26,9 @@ enum class LeafArrangement {
 /// What the leaves look like, and whether there are any.
 enum class Season { spring, summer, autumn, winter, blossom };
 
+/// Of one tree; scene files take no more either.
+inline constexpr int kMostLeaves = 2000000;
+
 /// Lengths in metres, angles in degrees. Ranges, units and meanings: parameter_descriptions().
 struct GrowthParameters {
     std::string species = "oak";

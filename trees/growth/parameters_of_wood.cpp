@@ -19,8 +19,8 @@ std::vector<ParameterRow> tree_rows() {
     seed.set = [](P& p, double v) { p.seed = std::uint64_t(v); };
     return grouped(
         "tree",
-        {seed, whole("leaves", &P::leaves, "", 1, 2000000, "Number of leaves; the tree's size follows from it."),
-         whole("young_below", &P::young_below, "leaves", 0, 2000000,
+        {seed, whole("leaves", &P::leaves, "", 1, kMostLeaves, "Number of leaves; the tree's size follows from it."),
+         whole("young_below", &P::young_below, "leaves", 0, kMostLeaves,
                "With fewer leaves it is a young tree: it has a leader, is slender and leafy far down, and its "
                "twigs don't hang; 0: never.")});
 }

@@ -11,8 +11,6 @@ namespace kokage {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMostLeaves = 2000000; ///< as the parameter 'leaves' of species takes
-
 constexpr double kFarthest = 10000;
 constexpr std::uint64_t kLargestSpeciesFile = 1 << 20;
 

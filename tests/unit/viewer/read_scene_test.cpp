@@ -361,6 +361,10 @@ TEST(SceneSchema, TellsEveryGrowthParameterAndSpecies) {
             EXPECT_EQ(told["type"], p.whole ? "integer" : "number") << p.name;
             EXPECT_EQ(told["minimum"], p.low) << p.name;
             EXPECT_EQ(told["maximum"], p.high) << p.name;
+            if (const Json& of_tree = schema["definitions"]["tree"]["properties"]; of_tree.contains(p.name)) {
+                EXPECT_EQ(of_tree[p.name]["minimum"], p.low) << p.name;
+                EXPECT_EQ(of_tree[p.name]["maximum"], std::min(p.high, 2147483647.)) << p.name;
+            }
         } else {
             EXPECT_EQ(told["enum"], Json(p.choices)) << p.name;
         }
