@@ -7,7 +7,7 @@
 
 #include "reflection/relief/cone_map.h"
 #include "reflection/relief/cone_tracer.h"
-#include "reflection/relief/lane_rays.h"
+#include "reflection/relief/lane_tracer.h"
 #include "reflection/relief/ray_lanes-inl.h"
 
 HWY_BEFORE_NAMESPACE();
@@ -187,30 +187,22 @@ HWY_EXPORT(TraceCones);
 
 namespace {
 
-class CellConeTracer final : public ConeTracer {
+class CellConeTracer final : public LaneTracer<ConeTracer> {
   public:
-    explicit CellConeTracer(const HeightField& field) : field_(field), padded_(field), cones_(make_cone_map(field)) {}
+    explicit CellConeTracer(const HeightField& field)
+        : LaneTracer(field), padded_(field), cones_(make_cone_map(field)) {}
     CellConeTracer(const HeightField& field, const std::filesystem::path& path)
-        : field_(field), padded_(field), cones_(load_cone_map(field, path)) {}
+        : LaneTracer(field), padded_(field), cones_(load_cone_map(field, path)) {}
 
-    void trace(std::span<const ReliefRay> rays, std::span<ReliefHit> hits) const override {
-        trace_in_lanes(field_, rays, hits, [&](auto block, const LaneResults& results) { run(block, results); });
-    }
-    void occluded(std::span<const ReliefRay> rays, std::span<std::uint8_t> hidden,
-                  std::span<std::uint32_t> reads) const override {
-        occlude_in_lanes(field_, rays, hidden, reads,
-                         [&](auto block, const LaneResults& results) { run(block, results); });
-    }
     std::size_t bytes() const override { return padded_.bytes() + cones_.size() * sizeof(CellCone); }
     void store(const std::filesystem::path& path) const override { store_cone_map(field_, cones_, path); }
 
   private:
-    void run(std::span<const ReliefRay> rays, const LaneResults& results) const {
+    void search(std::span<const ReliefRay> rays, const LaneResults& results) const override {
         using namespace relief_lanes;
         HWY_DYNAMIC_DISPATCH(TraceCones)(padded_, cones_.data(), rays, results);
     }
 
-    const HeightField& field_;
     PaddedDepths padded_; // checks the field before cones are made of it
     std::vector<CellCone> cones_;
 };

@@ -1,6 +1,7 @@
 #include "reflection/relief/depth_map_tracer.h"
 #include "common/services/error.h"
 #include "reflection/relief/depth_map_search.h"
+#include "reflection/relief/lane_tracer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,27 +15,18 @@ namespace {
 constexpr int kMostSteps = 4096, kMostBisections = 24;
 constexpr float kBoundMargin = 0x1p-14f; ///< of depth: rays begin that much above their bound
 
-class DepthMapTracer final : public ReliefTracer {
+class DepthMapTracer final : public LaneTracer<ReliefTracer> {
   public:
     DepthMapTracer(const HeightField& field, DepthMaps maps, const DepthMapSearch& search)
-        : field_(field), padded_(field), maps_(std::move(maps)), table_(maps_), search_(search) {}
+        : LaneTracer(field), padded_(field), maps_(std::move(maps)), table_(maps_), search_(search) {}
 
-    void trace(std::span<const ReliefRay> rays, std::span<ReliefHit> hits) const override {
-        trace_in_lanes(field_, rays, hits, [&](auto block, const LaneResults& results) { run(block, results); });
-    }
-    void occluded(std::span<const ReliefRay> rays, std::span<std::uint8_t> hidden,
-                  std::span<std::uint32_t> reads) const override {
-        occlude_in_lanes(field_, rays, hidden, reads,
-                         [&](auto block, const LaneResults& results) { run(block, results); });
-    }
     std::size_t bytes() const override { return padded_.bytes() + maps_.bytes(); }
 
   private:
-    void run(std::span<const ReliefRay> rays, const LaneResults& results) const {
+    void search(std::span<const ReliefRay> rays, const LaneResults& results) const override {
         search_depth_maps(padded_, table_, search_, rays, results);
     }
 
-    const HeightField& field_;
     PaddedDepths padded_;
     DepthMaps maps_;
     DepthMapTable table_;

@@ -6,7 +6,7 @@
 #include <hwy/highway.h>
 
 #include "common/services/error.h"
-#include "reflection/relief/lane_rays.h"
+#include "reflection/relief/lane_tracer.h"
 #include "reflection/relief/linear_tracer.h"
 #include "reflection/relief/ray_lanes-inl.h"
 
@@ -105,30 +105,21 @@ HWY_EXPORT(TraceLinear);
 
 namespace {
 
-class LinearTracer final : public ReliefTracer {
+class LinearTracer final : public LaneTracer<ReliefTracer> {
   public:
     LinearTracer(const HeightField& field, const LinearSearch& search)
-        : field_(field), padded_(field), search_(search) {}
+        : LaneTracer(field), padded_(field), options_(search) {}
 
-    void trace(std::span<const ReliefRay> rays, std::span<ReliefHit> hits) const override {
-        trace_in_lanes(field_, rays, hits, [&](auto block, const LaneResults& results) { run(block, results); });
-    }
-    void occluded(std::span<const ReliefRay> rays, std::span<std::uint8_t> hidden,
-                  std::span<std::uint32_t> reads) const override {
-        occlude_in_lanes(field_, rays, hidden, reads,
-                         [&](auto block, const LaneResults& results) { run(block, results); });
-    }
     std::size_t bytes() const override { return padded_.bytes(); }
 
   private:
-    void run(std::span<const ReliefRay> rays, const LaneResults& results) const {
+    void search(std::span<const ReliefRay> rays, const LaneResults& results) const override {
         using namespace relief_lanes;
-        HWY_DYNAMIC_DISPATCH(TraceLinear)(padded_, search_, rays, results);
+        HWY_DYNAMIC_DISPATCH(TraceLinear)(padded_, options_, rays, results);
     }
 
-    const HeightField& field_;
     PaddedDepths padded_;
-    LinearSearch search_;
+    LinearSearch options_;
 };
 
 } // namespace

@@ -46,16 +46,22 @@ ReflectionRecord record_of(const Environment& environment, const std::string& me
     return record;
 }
 
+/// With what baking takes, in `record`.
+std::vector<glm::vec3> texels_of(const TexelLayout& layout, const Environment& environment,
+                                 const ExperimentContext& context, ReflectionRecord& record) {
+    WorkReport report;
+    const Stopwatch watch;
+    const std::unique_ptr<Baker> baker =
+        make_baker(layout, environment.remainder.width, environment.remainder.height, {}, report, context.progress);
+    record.setup_cpu_seconds = watch.cpu();
+    return timed_bake(*baker, environment, layout.size(), context.progress, record);
+}
+
 void measure_shells(const ExperimentContext& context, const Environment& environment, const Lookups& at,
                     const std::vector<glm::vec3>& truth, const ShellSettings& settings) {
     ShellMap shells(settings);
     ReflectionRecord record = record_of(environment, "shells", truth.size());
-    WorkReport report;
-    const Stopwatch watch;
-    const std::unique_ptr<Baker> baker = make_baker(shells.layout(), environment.remainder.width,
-                                                    environment.remainder.height, {}, report, context.progress);
-    record.setup_cpu_seconds = watch.cpu();
-    shells.set_texels(timed_bake(*baker, environment, shells.layout().size(), context.progress, record));
+    shells.set_texels(texels_of(shells.layout(), environment, context, record));
     record.bytes = double(shells.bytes());
     record.note += std::string(texel_format_name(settings.format)) + ", " + std::to_string(shells.shells().size()) +
                    " shells, the smoothest of 6 x " + std::to_string(shells.shells().back().resolution) + "^2";
@@ -69,12 +75,7 @@ void measure_cube(const ExperimentContext& context, const Environment& environme
                   const std::vector<glm::vec3>& truth) {
     VoxelCube cube(LobeKind::phong, RoughnessScale::solved(kSize));
     ReflectionRecord record = record_of(environment, "cube", truth.size());
-    WorkReport report;
-    const Stopwatch watch;
-    const std::unique_ptr<Baker> baker = make_baker(cube.layout(), environment.remainder.width,
-                                                    environment.remainder.height, {}, report, context.progress);
-    record.setup_cpu_seconds = watch.cpu();
-    cube.set_texels(timed_bake(*baker, environment, cube.layout().size(), context.progress, record));
+    cube.set_texels(texels_of(cube.layout(), environment, context, record));
     record.bytes = double(texel_bytes(TexelFormat::half_rgb) * cube.voxels().size());
     record.note += "bytes as half, kept in memory as float";
     std::vector<glm::vec3> values(truth.size());
