@@ -93,49 +93,77 @@ LightMapGloss::LightMapGloss(const ShadedScene& scene, const Environment& enviro
     check(scene.light_maps, scene.patches->patches.size());
     least_roughness_ = least_map_roughness(environment);
     count_ = scene.light_maps.maps.front().coefficients.size();
+    number_slots();
     mix_at_corners();
     fill_lobes();
 }
 
-void LightMapGloss::mix_at_corners() {
+std::size_t LightMapGloss::bytes() const {
+    return slot_.size() * sizeof(std::uint32_t) + values_.size() * sizeof(float) + factors_.size() * sizeof(glm::vec3);
+}
+
+double LightMapGloss::most_bytes(double places, double slots, int bands) {
+    const double area = sizeof(float); // while maps are mixed
+    return places * double(sizeof(std::uint32_t)) +
+           slots * (3 * double(sh_count(bands) * sizeof(float)) + double(sizeof(glm::vec3)) + area);
+}
+
+template <typename Visit>
+void LightMapGloss::for_each_triangle_that_reads(Visit&& visit) const {
     const PatchScene& patches = *scene_.patches;
-    slot_.assign(surfaces_.light_count() / 2, 0);
-    std::vector<float> areas, mix(3 * count_);
     for (std::size_t p = 0; p < patches.patches.size(); ++p) {
-        const auto shares = scene_.light_maps.of(p);
-        if (!reads(shares))
+        if (!reads(scene_.light_maps.of(p)))
             continue;
-        std::fill(mix.begin(), mix.end(), 0.f);
-        for (const LightMapShare& share : shares)
-            for (std::size_t j = 0; j < count_; ++j)
-                for (std::size_t c = 0; c < 3; ++c)
-                    mix[c * count_ + j] += share.share * scene_.light_maps.maps[share.map].coefficients[j][c];
         const Patch& patch = patches.patches[p];
         for (std::uint32_t t = patch.first_triangle; t < patch.first_triangle + patch.triangle_count; ++t) {
             SurfacePoint at;
             at.triangle = t;
             at.patch = std::uint32_t(p);
             at.smooth = scene_.looks[scene_.triangle_look[t]].smooth_normals;
-            if (!at.smooth)
-                continue;
-            const glm::uvec3 triangle = patches.triangles[t];
-            const glm::vec3 a = patches.positions[triangle.x];
-            const float area = std::max(
-                glm::length(glm::cross(patches.positions[triangle.y] - a, patches.positions[triangle.z] - a)), 1e-20f);
-            for (const std::uint32_t place : surfaces_.places(at).places) {
-                if (slot_[place] == 0) {
-                    areas.push_back(0.f);
-                    slot_[place] = std::uint32_t(areas.size());
-                    values_.resize(areas.size() * mix.size(), 0.f);
-                }
-                areas[slot_[place] - 1] += area;
-                float* values = values_.data() + (slot_[place] - 1) * mix.size();
-                for (std::size_t j = 0; j < mix.size(); ++j)
-                    values[j] += area * mix[j];
-            }
+            if (at.smooth)
+                visit(at, surfaces_.places(at).places);
         }
     }
-    factors_.assign(areas.size(), glm::vec3(1.f));
+}
+
+/// Counts them before any is made: an array that grows takes thrice its size.
+void LightMapGloss::number_slots() {
+    slot_.assign(surfaces_.light_count() / 2, 0);
+    std::uint32_t count = 0;
+    for_each_triangle_that_reads([&](const SurfacePoint&, const std::array<std::uint32_t, 3>& places) {
+        for (const std::uint32_t place : places)
+            if (slot_[place] == 0)
+                slot_[place] = ++count;
+    });
+    values_.assign(count * 3 * count_, 0.f);
+    factors_.assign(count, glm::vec3(1.f));
+}
+
+void LightMapGloss::mix_at_corners() {
+    const PatchScene& patches = *scene_.patches;
+    std::vector<float> areas(factors_.size(), 0.f), mix(3 * count_);
+    std::uint32_t mixed_patch = ~0u;
+    for_each_triangle_that_reads([&](const SurfacePoint& at, const std::array<std::uint32_t, 3>& places) {
+        if (at.patch != mixed_patch) {
+            mixed_patch = at.patch;
+            std::fill(mix.begin(), mix.end(), 0.f);
+            for (const LightMapShare& share : scene_.light_maps.of(at.patch))
+                for (std::size_t j = 0; j < count_; ++j)
+                    for (std::size_t c = 0; c < 3; ++c)
+                        mix[c * count_ + j] += share.share * scene_.light_maps.maps[share.map].coefficients[j][c];
+        }
+        const glm::uvec3 triangle = patches.triangles[at.triangle];
+        const glm::vec3 a = patches.positions[triangle.x];
+        const float area = std::max(
+            glm::length(glm::cross(patches.positions[triangle.y] - a, patches.positions[triangle.z] - a)), 1e-20f);
+        for (const std::uint32_t place : places) {
+            const std::size_t slot = slot_[place] - 1;
+            areas[slot] += area;
+            float* values = values_.data() + slot * mix.size();
+            for (std::size_t j = 0; j < mix.size(); ++j)
+                values[j] += area * mix[j];
+        }
+    });
     for (std::size_t k = 0; k < areas.size(); ++k)
         for (std::size_t j = 0; j < mix.size(); ++j)
             values_[k * mix.size() + j] /= areas[k];

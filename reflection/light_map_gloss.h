@@ -33,9 +33,16 @@ class LightMapGloss {
             factors_[slot_[place] - 1] = factor;
     }
 
-    std::size_t bytes() const { return values_.size() * sizeof(float); }
+    std::size_t bytes() const;
+    /// Of so many places of light on one side (patches and corners), so many of which read maps of so many bands: at
+    /// the most, while it is made.
+    static double most_bytes(double places, double slots, int bands);
 
   private:
+    /// `visit` takes the triangle's point and its places.
+    template <typename Visit>
+    void for_each_triangle_that_reads(Visit&& visit) const;
+    void number_slots();
     void mix_at_corners();
     void fill_lobes();
     void fall_off(float roughness, std::span<float> of_bands) const;

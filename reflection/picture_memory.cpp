@@ -1,8 +1,23 @@
 #include "reflection/picture_memory.h"
 #include "reflection/final_gather.h"
+#include "reflection/light_map_gloss.h"
 #include "reflection/sample_plan.h"
 
 namespace kokage {
+namespace {
+
+/// Closed surfaces have half as many corners as triangles, hard edges up to six times as many.
+constexpr double kCornersOfTriangle = 0.75;
+
+double smooth_triangles(const PatchScene& scene) {
+    double count = 0;
+    for (const Patch& patch : scene.patches)
+        if (patch.kind == PatchKind::bark)
+            count += patch.triangle_count;
+    return count;
+}
+
+} // namespace
 
 double picture_bytes(const PictureOptions& options, int threads) {
     const double pixels = double(options.width) * double(options.height), columns = double(options.width) + 2;
@@ -15,18 +30,23 @@ double picture_bytes(const PictureOptions& options, int threads) {
 }
 
 double light_bytes(const PictureOptions& options, const PatchScene& scene, int threads) {
-    double smooth_triangles = 0;
-    for (const Patch& patch : scene.patches)
-        if (patch.kind == PatchKind::bark)
-            smooth_triangles += patch.triangle_count;
+    const double smooth = smooth_triangles(scene), corners = kCornersOfTriangle * smooth;
     const auto patches = double(scene.patches.size()), triangles = double(scene.triangles.size());
-    // Closed surfaces have half as many corners as triangles, hard edges up to six times as many.
-    const double corners = 0.75 * smooth_triangles;
     constexpr double kOfCorner = 120; // while corners are joined
-    const double joining =
-        smooth_triangles > 0 ? 12 * triangles + 4 * double(scene.positions.size()) + kOfCorner * corners : 0;
+    const double joining = smooth > 0 ? 12 * triangles + 4 * double(scene.positions.size()) + kOfCorner * corners : 0;
     return 2 * (patches + corners) * double(sizeof(glm::vec3)) + joining +
            gathering_bytes(options, patches, corners, threads);
+}
+
+double light_map_bytes(const PatchScene& scene, std::span<const std::uint8_t> readers, int bands) {
+    double reading = 0;
+    for (std::size_t p = 0; p < readers.size(); ++p)
+        if (readers[p])
+            reading += scene.patches[p].triangle_count;
+    if (reading == 0)
+        return 0;
+    const double places = double(scene.patches.size()) + kCornersOfTriangle * smooth_triangles(scene);
+    return LightMapGloss::most_bytes(places, kCornersOfTriangle * reading, bands);
 }
 
 } // namespace kokage

@@ -5,24 +5,32 @@
 #include "reflection/gloss_in_transport.h"
 #include "reflection/light_map_readers.h"
 #include "reflection/path_traced_picture.h"
+#include "reflection/picture_memory.h"
 #include "viewer/scene/scene_memory.h"
 #include "viewer/scene/stage_clock.h"
 
 namespace kokage {
 namespace {
 
-/// Those that light rough bark in view, of trees alone: an object stands anywhere.
-LightMapsOfPatches light_maps_in_view(const AssembledScene& scene, const RenderOptions& options,
-                                      const RayQueries& queries, const ShadedScene& shaded,
-                                      const SideRadiance& radiance, WorkReport& report, Progress& progress) {
+/// Per patch: 1 where it is to read light maps. Of trees alone: an object stands anywhere.
+std::vector<std::uint8_t> patches_to_read_maps(const AssembledScene& scene, const RenderOptions& options,
+                                               const ShadedScene& shaded) {
+    if (!options.light_maps)
+        return {};
     std::vector<std::uint8_t> readers = light_map_readers(shaded, scene.environment, scene.camera, options.picture);
     for (std::size_t t = 0; t < scene.patches.triangles.size(); ++t)
         if (scene.origins.triangle_part[t] >= scene.tree_parts)
             readers[scene.patches.triangle_patch[t]] = 0;
     if (!options.skip_unread_light_maps)
         std::fill(readers.begin(), readers.end(), 1);
-    LightMapsOfPatches maps = make_patch_light_maps(queries, scene.tree, readers, scene.environment, radiance,
-                                                    {.seed = options.picture.seed}, progress, report);
+    return readers;
+}
+
+LightMapsOfPatches light_maps_for(const std::vector<std::uint8_t>& readers, const AssembledScene& scene,
+                                  const PatchLightMapOptions& options, const RayQueries& queries,
+                                  const SideRadiance& radiance, WorkReport& report, Progress& progress) {
+    LightMapsOfPatches maps =
+        make_patch_light_maps(queries, scene.tree, readers, scene.environment, radiance, options, progress, report);
     if (maps.empty())
         report.skips.push_back({"light maps", "no rough, glossy bark in view reads any", "their rays and memory"});
     return maps;
@@ -31,8 +39,12 @@ LightMapsOfPatches light_maps_in_view(const AssembledScene& scene, const RenderO
 /// The fast way: light is solved once for all patches, pixels read it.
 Picture render_solved(const AssembledScene& scene, const RenderOptions& options, StageClock& clock, WorkReport& report,
                       Progress& progress) {
+    ShadedScene shaded = unlit_scene(scene);
+    const std::vector<std::uint8_t> map_readers = patches_to_read_maps(scene, options, shaded);
+    const PatchLightMapOptions map_options{.seed = options.picture.seed};
     check_memory(estimated_transport_bytes(double(scene.patches.patches.size()), options.error) +
-                     estimated_picture_bytes(options.picture, scene.patches),
+                     estimated_picture_bytes(options.picture, scene.patches) +
+                     light_map_bytes(scene.patches, map_readers, map_options.bands),
                  "the light of " + count_text(scene.patches.patches.size()) +
                      " patches at this error, with the picture,",
                  "ask for a larger error, fewer trees, fewer leaves, or a smaller picture");
@@ -43,7 +55,6 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
     progress.throw_if_stopped();
-    ShadedScene shaded = unlit_scene(scene);
     const std::vector<Optics> with_gloss = optics_with_gloss(shaded);
     transport->set_optics(with_gloss);
     Solution solution = clock.run("solve", [&] { return transport->solve(scene.environment, progress); });
@@ -56,7 +67,7 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     const auto queries = clock.run("ray structure", [&] { return std::make_unique<const RayQueries>(scene.patches); });
     if (options.light_maps)
         shaded.light_maps = clock.run("light maps", [&] {
-            return light_maps_in_view(scene, options, *queries, shaded, solution.radiance, report, progress);
+            return light_maps_for(map_readers, scene, map_options, *queries, solution.radiance, report, progress);
         });
     return clock.run("render", [&] {
         shaded.indirect_front = std::move(solution.indirect.front);

@@ -1,5 +1,6 @@
 #include "common/services/parallel.h"
 #include "reflection/gathered_sums.h"
+#include "reflection/light_map_readers.h"
 #include "reflection/picture_memory.h"
 #include "tests/unit/reflection/picture_scenes.h"
 
@@ -67,6 +68,72 @@ TEST(PictureMemory, OfLightAndGatheringIsWhatALargeSceneTakes) {
         EXPECT_LT(estimated, (reflectance > 0 ? 2 : 4.5) * taken);
     }
     set_thread_count(0);
+}
+
+/// Level rough bark, all of it one surface, lit by a light map.
+struct BarkField {
+    PatchScene patches;
+    ShadedScene scene;
+
+    explicit BarkField(std::uint32_t side) {
+        patches.optics = {{glm::vec3(0.2f), glm::vec3(0.f)}};
+        for (std::uint32_t row = 0; row <= side; ++row)
+            for (std::uint32_t column = 0; column <= side; ++column)
+                patches.positions.emplace_back(column, 0, row);
+        for (std::uint32_t row = 0; row < side; ++row)
+            for (std::uint32_t column = 0; column < side; ++column) {
+                const std::uint32_t corner = row * (side + 1) + column, next = corner + side + 1;
+                const auto first = std::uint32_t(patches.triangles.size()),
+                           patch = std::uint32_t(patches.patches.size());
+                patches.triangles.insert(patches.triangles.end(),
+                                         {{corner, next, corner + 1}, {corner + 1, next, next + 1}});
+                patches.triangle_patch.insert(patches.triangle_patch.end(), {patch, patch});
+                patches.patches.push_back(
+                    {.first_triangle = first, .triangle_count = 2, .optics = 0, .kind = PatchKind::bark, .leaf = 0});
+            }
+        scene = evenly_shaded(patches, glm::vec3(0.2f));
+        scene.normals.assign(patches.positions.size(), glm::vec3(0, 1, 0));
+        scene.looks.resize(1);
+        scene.looks[0].smooth_normals = true;
+        scene.looks[0].gloss.normal_reflectance = glm::vec3(0.04f);
+        scene.looks[0].gloss.roughness = 0.9f;
+        scene.triangle_look.assign(patches.triangles.size(), 0);
+        LightMap map;
+        map.coefficients.assign(std::size_t(map.bands) * std::size_t(map.bands), glm::vec3(0.f));
+        map.coefficients[0] = glm::vec3(3.5f);
+        scene.light_maps.maps = {map};
+        scene.light_maps.per_patch = 1;
+        scene.light_maps.shares.assign(patches.patches.size(), {0, 1});
+    }
+};
+
+TEST(PictureMemory, OfBarkThatReadsLightMaps) {
+    constexpr std::uint32_t kSide = 250;
+    set_thread_count(2);
+    const BarkField bark(kSide);
+    const RayQueries queries(bark.patches);
+    PictureOptions options = without_ground(300, 300, 1);
+    options.gather_rays = 1;
+    const Camera camera = camera_at({0.5f * kSide, kSide, 0.5f * kSide}, {0.5f * kSide, 0, 0.5f * kSide}, 0.9273f);
+    const Environment sky = constant_environment(glm::vec3(1.f));
+    render_picture(bark.scene, queries, sky, camera, without_ground(8, 8, 1), silent_progress()); // pools and tables
+    const bool can_measure = forget_peak();
+    const std::optional<double> before = memory("VmRSS");
+    render_picture(bark.scene, queries, sky, camera, options, silent_progress());
+    const std::optional<double> peak = memory("VmHWM");
+    set_thread_count(0);
+    if (!can_measure || !before || !peak || !(*peak > *before))
+        GTEST_SKIP() << "skipped: the system does not tell of peaks of memory";
+    const std::vector<std::uint8_t> readers = light_map_readers(bark.scene, sky, camera, options);
+    const double maps = light_map_bytes(bark.patches, readers, bark.scene.light_maps.maps[0].bands);
+    const double taken = *peak - *before,
+                 without_maps = picture_bytes(options, 2) + light_bytes(options, bark.patches, 2);
+    EXPECT_GT(without_maps + maps, 0.95 * taken);
+    EXPECT_LT(without_maps + maps, 2 * taken);
+    EXPECT_GT(maps, 0.3 * (without_maps + maps));
+    std::printf("taken %g without %g maps %g\n", taken, without_maps, maps);
+    EXPECT_EQ(light_map_bytes(bark.patches, std::vector<std::uint8_t>(bark.patches.patches.size(), 0), 7), 0);
+    EXPECT_EQ(light_map_bytes(bark.patches, {}, 7), 0);
 }
 
 TEST(PictureMemory, OfGatheringGrowsWithWhatIsSeen) {
