@@ -7,7 +7,7 @@ UnlitHit CameraRayShading::unlit(const glm::vec3& origin, const CameraHit& hit, 
     UnlitHit unlit;
     unlit.sample = sample;
     const float ground_distance = ground.distance(origin, hit.direction);
-    if (hit.shows_surface(ground_distance)) {
+    if (hit.shows_surface(ground.distance_to_surfaces(ground_distance, hit.direction))) {
         unlit.kind = UnlitHit::Kind::surface;
         unlit.distance = hit.hit.distance;
         unlit.at = surfaces.point(origin, hit);

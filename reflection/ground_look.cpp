@@ -47,16 +47,16 @@ glm::vec3 ground_variation(glm::vec2 place, float size, float finest, float spre
     return 1.f + spread * (brightness + tint * glm::vec3(0.8f, -0.2f, 0.1f));
 }
 
-GroundLook::GroundLook(const ShadedScene& scene, const Environment& environment, const Backdrop& backdrop,
-                       const Camera& camera, const PictureOptions& options) {
+GroundLook::GroundLook(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                       const Backdrop& backdrop, const Camera& camera, const PictureOptions& options) {
     const Bounds bounds = bounds_of(*scene.patches);
     if (scene.patches->ground) {
-        height_ = scene.patches->ground->height_m;
+        plane_.emplace(scene.patches->ground->height_m, queries.ray_offset());
         albedo_ = scene.patches->ground->albedo;
     } else if (options.ground == PictureGround::automatic) {
         if (environment.has_lower_half && scene.patches->triangles.empty())
             return; // nothing that could cast a shadow
-        height_ = scene.foot_height.value_or(bounds.low.y);
+        plane_.emplace(scene.foot_height.value_or(bounds.low.y), queries.ray_offset());
         if (!environment.has_lower_half)
             albedo_ = glm::vec3(0.2f);
     } else {
@@ -66,7 +66,7 @@ GroundLook::GroundLook(const ShadedScene& scene, const Environment& environment,
     centre_ = {bounds.centre().x, bounds.centre().z};
     pixel_angle_ = 2 * std::tan(0.5f * camera.vertical_field_of_view) / float(options.height);
     scene_radius_ = std::max({half.x, half.y, half.z});
-    haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - *height_));
+    haze_distance_ = 30 * std::max(2 * scene_radius_, 4 * std::abs(camera.position.y - plane_->height_m()));
     if (!(haze_distance_ > 0))
         haze_distance_ = 1;
     if (albedo_)
@@ -74,10 +74,11 @@ GroundLook::GroundLook(const ShadedScene& scene, const Environment& environment,
 }
 
 float GroundLook::distance(const glm::vec3& origin, const glm::vec3& direction) const {
-    if (!height_)
-        return kInfinity;
-    const float t = (*height_ - origin.y) / direction.y;
-    return t > 0 && std::isfinite(t) ? t : kInfinity;
+    return plane_ ? plane_->distance(origin, direction) : kInfinity;
+}
+
+float GroundLook::distance_to_surfaces(float ground_distance, const glm::vec3& direction) const {
+    return plane_ ? plane_->distance_to_surfaces(ground_distance, direction) : kInfinity;
 }
 
 glm::vec3 GroundLook::albedo(const glm::vec3& point, const glm::vec3& direction, float distance) const {

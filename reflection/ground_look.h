@@ -1,6 +1,7 @@
 #pragma once
 // The ground under a scene as a surface: where it lies, its colour, the air in front of it. Its light is
 // ground_shading.h's.
+#include "common/trace/ground_plane.h"
 #include "reflection/backdrop.h"
 #include "reflection/picture.h"
 
@@ -10,17 +11,21 @@ namespace kokage {
 
 class GroundLook {
   public:
-    GroundLook(const ShadedScene& scene, const Environment& environment, const Backdrop& backdrop, const Camera& camera,
-               const PictureOptions& options);
+    /// `queries`: of the scene.
+    GroundLook(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+               const Backdrop& backdrop, const Camera& camera, const PictureOptions& options);
 
     /// Empty if the picture has no ground.
-    const std::optional<float>& height() const { return height_; }
+    std::optional<float> height() const { return plane_ ? std::optional(plane_->height_m()) : std::nullopt; }
     /// Empty: the backdrop is the ground, and takes shadows.
     const std::optional<glm::vec3>& mean_albedo() const { return albedo_; }
     /// Distance at which a ray meets the ground; infinite if it doesn't.
     float distance(const glm::vec3& origin, const glm::vec3& direction) const;
+    /// A ray that meets the ground at `ground_distance` shows surfaces up to here in its place: those that lie in the
+    /// ground's plane as well. Infinite if it doesn't meet it.
+    float distance_to_surfaces(float ground_distance, const glm::vec3& direction) const;
     glm::vec3 point(const glm::vec3& origin, const glm::vec3& direction, float distance) const {
-        return {origin.x + distance * direction.x, *height_, origin.z + distance * direction.z};
+        return {origin.x + distance * direction.x, plane_->height_m(), origin.z + distance * direction.z};
     }
     /// Soil varies. As a camera ray of that length sees it: no finer than a pixel.
     glm::vec3 albedo(const glm::vec3& point, const glm::vec3& direction, float distance) const;
@@ -33,7 +38,7 @@ class GroundLook {
   private:
     void measure_haze(const Backdrop& backdrop);
 
-    std::optional<float> height_;
+    std::optional<GroundPlane> plane_;
     std::optional<glm::vec3> albedo_;
     glm::vec2 centre_{0.f};
     std::vector<glm::vec3> haze_; ///< by azimuth: what far ground fades into

@@ -10,7 +10,8 @@ std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const 
     ++scratch.met_rays;
     RayHit hit;
     const float ground_distance = ground_.distance(origin, direction);
-    if (queries_.first_hit(origin, direction, queries_.ray_offset(), ground_distance, hit) && !hit.ground)
+    const float hidden_from = ground_.distance_to_surfaces(ground_distance, direction);
+    if (queries_.first_hit(origin, direction, queries_.ray_offset(), hidden_from, hit) && !hit.ground)
         return surfaces_.met_radiance(surfaces_.point(origin, direction, hit), direction, sample, scratch);
     if (ground_distance < kInfinity)
         return ground_light_.met_radiance(origin, direction, ground_distance, sample, scratch);

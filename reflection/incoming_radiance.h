@@ -23,9 +23,9 @@ class IncomingRadiance {
     float ray_offset() const { return queries_.ray_offset(); }
     /// Else the surroundings' lower half plays the ground.
     bool has_ground() const { return ground_.mean_albedo().has_value(); }
-    /// Where a ray meets the ground; infinite if it doesn't.
+    /// From where on the ground hides surfaces from a ray; infinite if it doesn't meet it.
     float ground_distance(const glm::vec3& origin, const glm::vec3& direction) const {
-        return ground_.distance(origin, direction);
+        return ground_.distance_to_surfaces(ground_.distance(origin, direction), direction);
     }
 
   private:

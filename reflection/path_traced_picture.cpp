@@ -25,7 +25,7 @@ struct TruthOfPicture {
     SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, PathNumbers& numbers) const {
         const glm::vec3 direction = hit.direction;
         const float ground_distance = ground.distance(origin, direction);
-        if (hit.shows_surface(ground_distance)) {
+        if (hit.shows_surface(ground.distance_to_surfaces(ground_distance, direction))) {
             const SurfacePoint at = paths.points().at(origin, hit);
             return SeenByRay::surface_at(at, hit.hit.distance, queries.scene(),
                                          paths.radiance(PathIntegrator::surface_vertex(at, direction), numbers));
@@ -56,7 +56,7 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
         with_true_ground.ground = PictureGround::none;
     const CameraFrame frame = camera_frame(camera, options.width, options.height);
     const Backdrop backdrop(environment);
-    const GroundLook ground(scene, environment, backdrop, camera, with_true_ground);
+    const GroundLook ground(scene, queries, environment, backdrop, camera, with_true_ground);
     const PathIntegrator paths(scene, queries, environment);
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 

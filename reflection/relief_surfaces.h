@@ -39,8 +39,8 @@ struct CameraHit {
     RayHit hit;
     ReliefPoint relief;
 
-    /// A surface of the scene, where the ray meets the ground at that distance or not at all (infinite).
-    bool shows_surface(float ground_distance) const { return found && !hit.ground && hit.distance <= ground_distance; }
+    /// A surface of the scene, where the ground hides those that lie farther (GroundLook::distance_to_surfaces).
+    bool shows_surface(float hidden_from) const { return found && !hit.ground && hit.distance <= hidden_from; }
 };
 
 class ReliefSurfaces {

@@ -185,7 +185,7 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const Backdrop backdrop(environment);
     const LightChoice lights(environment, options.light_samples);
     SurfaceShading surfaces(scene, queries, lights, options.pixel_shadows);
-    const GroundLook ground(scene, environment, backdrop, camera, options);
+    const GroundLook ground(scene, queries, environment, backdrop, camera, options);
     WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
     const IncomingRadiance incoming(queries, surfaces, ground, ground_light);

@@ -97,7 +97,9 @@ struct PathTracer::Implementation {
             remainder_share = 0.5f * (1 - std::sqrt(float(kLowContrast / remainder.contrast())));
     }
 
-    bool below_ground(const glm::vec3& point) const { return scene.ground && point.y < scene.ground->height_m; }
+    bool below_ground(const glm::vec3& point) const {
+        return scene.ground && point.y < scene.ground->height_m - offset;
+    }
 
     bool visible(const glm::vec3& point, const glm::vec3& normal, const LightRay& ray) const {
         const glm::vec3 side = glm::dot(normal, ray.direction) > 0 ? normal : -normal;

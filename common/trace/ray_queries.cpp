@@ -6,12 +6,14 @@
 // between coincident triangles.
 #include "common/trace/ray_queries.h"
 #include "common/services/error.h"
+#include "common/trace/ground_plane.h"
 
 #include <algorithm>
 #include <atomic>
 #include <cmath>
 #include <cstdlib>
 #include <embree3/rtcore.h>
+#include <optional>
 #include <string>
 #include <tbb/task_arena.h>
 
@@ -40,6 +42,7 @@ struct RayQueries::Implementation {
     double scale = 1; ///< normalised = (world - centre) * scale
     glm::vec3 centre_float{0.f};
     float scale_float = 1, inverse_scale = 1, offset = 0;
+    std::optional<GroundPlane> ground;
     std::vector<std::uint32_t> triangles[2]; ///< scene's triangle of each primitive; geometry 0: solid, 1: masked
     std::atomic<std::ptrdiff_t> bytes{0};
 
@@ -92,6 +95,8 @@ struct RayQueries::Implementation {
         scale = double(scale_float);
         inverse_scale = float(1 / scale);
         offset = std::max(float(reach) * kOffsetUlps, 1e-30f);
+        if (scene->ground)
+            ground.emplace(scene->ground->height_m, offset);
     }
 
     void sort_triangles() {
@@ -169,10 +174,12 @@ struct RayQueries::Implementation {
 
     /// Distance to the ground plane along a ray; infinite if it is not met in (near, far).
     float ground_distance(const glm::vec3& origin, const glm::vec3& direction, float near, float far) const {
-        if (!scene->ground || direction.y == 0)
-            return INFINITY;
-        const float distance = (scene->ground->height_m - origin.y) / direction.y;
+        const float distance = ground ? ground->distance(origin, direction) : INFINITY;
         return distance > near && distance < far ? distance : INFINITY;
+    }
+    /// How far a ray is to look for surfaces that lie before the ground, or on it.
+    float surface_distance(float ground_distance, const glm::vec3& direction, float far) const {
+        return ground ? std::min(far, ground->distance_to_surfaces(ground_distance, direction)) : far;
     }
 };
 
@@ -223,7 +230,7 @@ bool RayQueries::first_hit(const glm::vec3& origin, const glm::vec3& direction, 
     const float ground = self.ground_distance(origin, direction, near, far);
     if (self.embree_scene) {
         RTCRayHit query;
-        query.ray = self.ray(origin, direction, near, std::min(far, ground));
+        query.ray = self.ray(origin, direction, near, self.surface_distance(ground, direction, far));
         query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
         query.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
         RTCIntersectContext context;
@@ -263,7 +270,8 @@ void RayQueries::first_hits(std::span<const Ray> rays, std::span<RayHit> hits, s
         for (std::size_t k = 0; k < count; ++k) {
             const Ray& ray = rays[first + k];
             ground[k] = self.ground_distance(ray.origin, ray.direction, ray.near, ray.far);
-            packet.set(k, self.ray(ray.origin, ray.direction, ray.near, std::min(ray.far, ground[k])));
+            packet.set(k, self.ray(ray.origin, ray.direction, ray.near,
+                                   self.surface_distance(ground[k], ray.direction, ray.far)));
         }
         if (self.embree_scene)
             rtcIntersect16(packet.valid, self.embree_scene, &packet.context, &packet.query);

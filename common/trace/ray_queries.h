@@ -30,7 +30,7 @@ class RayQueries {
     RayQueries(RayQueries&&) noexcept;
     RayQueries& operator=(RayQueries&&) noexcept;
 
-    /// Nearest hit in (near, far); false if none. The ground plane is tested exactly, outside Embree.
+    /// Nearest hit in (near, far); false if none. Surfaces that lie in the ground's plane hide it (ground_plane.h).
     bool first_hit(const glm::vec3& origin, const glm::vec3& direction, float near, float far, RayHit& hit) const;
     /// True if anything solid lies in (near, far).
     bool occluded(const glm::vec3& origin, const glm::vec3& direction, float near, float far) const;

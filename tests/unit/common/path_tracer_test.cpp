@@ -274,6 +274,17 @@ TEST(PathTracer, NothingArrivesBelowTheGround) {
     expect_near(irradiance(tracer, {0, 1, 0}, {0, 1, 0}), glm::dvec3(kPiDouble), 1e-4);
 }
 
+TEST(PathTracer, RoundingPutsNoFloorBelowTheGround) {
+    PatchScene scene;
+    scene.optics.resize(1);
+    test::add_rectangle(scene, {-9, 1.7f, -9}, {0, 0, 18}, {18, 0, 0});
+    scene.ground = Ground{1.7f, glm::vec3(0.2f)};
+    const RayQueries queries(scene);
+    const Environment environment = test::constant_environment(glm::vec3(1));
+    const PathTracer tracer(queries, environment);
+    expect_near(irradiance(tracer, {0, std::nextafter(1.7f, 0.f), 0}, {0, 1, 0}), glm::dvec3(kPiDouble), 1e-4);
+}
+
 Environment spotted_environment() {
     Environment environment;
     environment.remainder = Image(32, 16, 3);

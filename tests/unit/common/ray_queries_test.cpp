@@ -154,6 +154,53 @@ TEST(RayQueries, NearerOfPatchAndGroundWins) {
     EXPECT_TRUE(hit.ground);
 }
 
+/// Rays at the middle of a floor of 20 x 20 m at `height`, from all sides, level and steep, near and far.
+std::vector<Ray> rays_at_a_floor(float height) {
+    std::vector<Ray> rays;
+    Random random(11);
+    for (int i = 0; i < 4000; ++i) {
+        const float away = std::exp(random.uniform(0.f, 7.f)), turn = random.uniform(0.f, 6.28f);
+        const float steepness = std::pow(random.uniform(), 3.f) + 0.003f;
+        const glm::vec3 aim(random.uniform(-8.f, 8.f), height, random.uniform(-8.f, 8.f));
+        const glm::vec3 towards = glm::normalize(glm::vec3(std::cos(turn), -steepness, std::sin(turn)));
+        rays.push_back({aim - away * towards, towards, 0, INFINITY});
+    }
+    return rays;
+}
+
+PatchScene floor_and_ground(float floor, float ground) {
+    PatchScene scene;
+    scene.optics.resize(1);
+    test::add_rectangle(scene, {-10, floor, -10}, {0, 0, 20}, {20, 0, 0});
+    scene.ground = Ground{ground, glm::vec3(0.2f)};
+    return scene;
+}
+
+TEST(RayQueries, SurfacesInTheGroundsPlaneHideIt) {
+    for (const float height : {0.f, 1.7f, -0.3f}) {
+        const PatchScene scene = floor_and_ground(height, height), sunk = floor_and_ground(height - 0.05f, height);
+        const RayQueries queries(scene), sunk_queries(sunk);
+        const std::vector<Ray> rays = rays_at_a_floor(height);
+        std::vector<RayHit> hits(rays.size());
+        std::vector<std::uint8_t> found(rays.size());
+        queries.first_hits(rays, hits, found);
+        int grounds = 0, below = 0, in_shadow = 0;
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+            RayHit hit;
+            ASSERT_TRUE(found[i] && queries.first_hit(rays[i].origin, rays[i].direction, 0, INFINITY, hit));
+            grounds += hit.ground || hits[i].ground;
+            const glm::vec3 point = rays[i].origin + hit.distance * rays[i].direction,
+                            up(-rays[i].direction.x, -rays[i].direction.y, -rays[i].direction.z);
+            in_shadow += hit.distance < 100 && queries.occluded(point, up, queries.ray_offset(), INFINITY);
+            ASSERT_TRUE(sunk_queries.first_hit(rays[i].origin, rays[i].direction, 0, INFINITY, hit));
+            below += !hit.ground;
+        }
+        EXPECT_EQ(grounds, 0) << height;
+        EXPECT_EQ(in_shadow, 0) << height;
+        EXPECT_EQ(below, 0) << height;
+    }
+}
+
 TEST(RayQueries, EmptySceneHasNoHits) {
     const PatchScene scene;
     const RayQueries queries(scene);
