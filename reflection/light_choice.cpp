@@ -10,12 +10,18 @@
 namespace kokage {
 namespace {
 
-constexpr std::size_t kFewLights = 2;
+/// So many are all tested. (Chosen by what they would contribute if nothing hid them, a strong light that is hidden
+/// would take most rays.)
+constexpr std::size_t kFewLights = 6;
 /// Keeps the inverse square finite where a point light touches a surface.
 constexpr float kLeastSquaredDistance = 1e-20f;
 
 constexpr float kWide = 0.05f; ///< half angle; the sun's is 0.005
-constexpr std::uint32_t kWideFactor = 4;
+/// Rays that are shared out among more.
+constexpr std::uint32_t kPicks = 2, kPicksAmongWide = 4;
+/// Rays to a wide light, whose penumbra is wide: so many, and fewer where wide lights would take more than so many in
+/// all.
+constexpr std::size_t kMostOfWide = 4, kMostOfAllWide = 8;
 
 /// Directions that are near one another mostly have near numbers.
 std::uint32_t place_of(const glm::vec3& direction) {
@@ -38,13 +44,18 @@ glm::vec3 Scattering::mirrored_towards(const glm::vec3& direction_to_light) cons
 
 LightChoice::LightChoice(const Environment& environment, int light_samples)
     : points_(environment.point_lights), light_samples_(std::uint32_t(std::max(1, light_samples))) {
-    for (const DistantLight& light : environment.distant_lights)
-        distant_.push_back(prepare(light, light_samples_));
+    const auto is_wide = [](const DistantLight& light) { return light.half_angle > kWide; };
+    const auto& lights = environment.distant_lights;
+    const auto wide = std::size_t(std::count_if(lights.begin(), lights.end(), is_wide));
+    const std::size_t of_wide =
+        std::clamp<std::size_t>(kMostOfAllWide / std::max<std::size_t>(wide, 1), 1, kMostOfWide);
+    for (const DistantLight& light : lights)
+        distant_.push_back(prepare(light, light_samples_ * std::uint32_t(is_wide(light) ? of_wide : 1)));
+    picks_ = light_samples_ * (wide > 0 ? kPicksAmongWide : kPicks);
 }
 
-LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32_t light_samples) {
-    const bool wide = light.half_angle > kWide;
-    Distant result{light, std::sin(std::min(light.half_angle, kPi / 2)), (wide ? kWideFactor : 1) * light_samples, {}};
+LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32_t rays) {
+    Distant result{light, std::sin(std::min(light.half_angle, kPi / 2)), rays, {}};
     std::stable_sort(result.light.texels.begin(), result.light.texels.end(),
                      [](const auto& a, const auto& b) { return place_of(a.direction) < place_of(b.direction); });
     double total = 0;
@@ -131,9 +142,7 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
         return;
     // Systematic sampling: one random start, then equal steps through the running sum. A light with the share p of the
     // sum is chosen floor(p picks) or ceil(p picks) times, and each choice weighs 1 / (picks p).
-    std::uint32_t picks = 2 * light_samples_;
-    for (const Distant& light : distant_)
-        picks = std::max(picks, light.rays);
+    const std::uint32_t picks = picks_;
     const double start = stratified(sample.index, sample.count, sample.pattern ^ 0x5bd1e995u), step = total / picks;
     double sum = 0;
     std::uint32_t pick = 0;

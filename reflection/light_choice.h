@@ -46,8 +46,8 @@ class LightChoice {
   public:
     LightChoice(const Environment& environment, int light_samples);
 
-    /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most two lights, or 2 x
-    /// light_samples chosen by systematic sampling of the lights' unshadowed contributions, so that strong lights are
+    /// Writes the rays to trace into `rays` (cleared first): one or more for each of at most six lights, or two to four
+    /// x light_samples chosen by systematic sampling of the lights' unshadowed contributions, so that strong lights are
     /// never missed and weak ones share. `scratch` is working space of the caller.
     void rays_at(const glm::vec3& point, const Scattering& scattering, SampleIndex sample, std::vector<ShadowRay>& rays,
                  std::vector<float>& scratch) const;
@@ -63,7 +63,7 @@ class LightChoice {
             rays; ///< shadow rays where all lights are tested: more for wide lights, as their penumbras are wide
         std::vector<double> shares; ///< cumulative share of the luminance, last = 1; empty for a disc
     };
-    static Distant prepare(const DistantLight& light, std::uint32_t light_samples);
+    static Distant prepare(const DistantLight& light, std::uint32_t rays);
     static LightSample draw(const Distant& light, glm::vec2 u);
     float contribution(std::size_t light, const glm::vec3& point, const Scattering& scattering) const;
     void add_ray(std::size_t light, const glm::vec3& point, const Scattering& scattering, float weight, glm::vec2 u,
@@ -71,7 +71,7 @@ class LightChoice {
 
     std::vector<Distant> distant_;
     std::vector<PointLight> points_;
-    std::uint32_t light_samples_;
+    std::uint32_t light_samples_, picks_;
 };
 
 } // namespace kokage

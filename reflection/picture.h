@@ -88,7 +88,7 @@ struct PictureSkips {
 struct PictureOptions {
     int width = 1280, height = 960;
     int samples = 16;      ///< camera rays a pixel; render_picture: in the mean, more where they differ (from 8 on)
-    int light_samples = 1; ///< shadow rays a light and camera ray; beyond two lights: 2 x this, chosen by contribution
+    int light_samples = 1; ///< shadow rays a light and camera ray; beyond six lights: 2 x this, chosen by contribution
     /// render_picture: rays a pixel that correct the solved light where the camera looks (final_gather.h). Empty: a
     /// quarter of `samples`, 1 to 16; with them a coarse solution does as well as a fine one. 0: the picture shows what
     /// was solved.

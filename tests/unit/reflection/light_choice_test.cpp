@@ -51,12 +51,46 @@ glm::dvec3 mean_of_choices(const Environment& environment, int light_samples, st
 }
 
 TEST(LightChoice, FewLightsAreAllTakenExactly) {
-    const Environment environment = many_lights(1);
-    std::size_t rays = 0;
-    const glm::dvec3 sum = mean_of_choices(environment, 1, 1, rays);
-    EXPECT_EQ(rays, 2u * 16);
-    for (std::size_t c = 0; c < 3; ++c)
-        EXPECT_NEAR(sum[c], double(all_lights(environment, glm::vec3(0.f))[c]), 1e-5);
+    for (const int distant : {1, 3, 5}) {
+        const Environment environment = many_lights(distant);
+        std::size_t rays = 0;
+        const glm::dvec3 sum = mean_of_choices(environment, 1, 1, rays);
+        EXPECT_EQ(rays, (std::size_t(distant) + 1) * 16);
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c], double(all_lights(environment, glm::vec3(0.f))[c]), 1e-5);
+    }
+}
+
+/// As a studio's lamp behind the backdrop.
+TEST(LightChoice, AStrongLightThatIsHiddenLeavesTheOthersWithoutNoise) {
+    Environment environment = many_lights(4);
+    const glm::vec3 visible = all_lights(environment, glm::vec3(0.f)), hidden(0, 1, 0);
+    environment.distant_lights.push_back(disc_light(hidden, 0.f, glm::vec3(100.f)));
+    const LightChoice choice(environment, 1);
+    std::vector<ShadowRay> rays;
+    std::vector<float> scratch;
+    for (std::uint32_t s = 0; s < 16; ++s) {
+        choice.rays_at({0, 0, 0}, kLeaf, {s, 16, 5}, rays, scratch);
+        glm::vec3 sum(0.f);
+        for (const ShadowRay& ray : rays)
+            if (ray.direction != hidden)
+                sum += ray.radiance;
+        for (std::size_t c = 0; c < 3; ++c)
+            EXPECT_NEAR(sum[c] / visible[c], 1, 1e-5);
+    }
+}
+
+TEST(LightChoice, WideLightsShareEightRaysOrTakeFourEach) {
+    for (const auto& [lights, rays_of_each] : {std::pair(1, 4u), {2, 4u}, {3, 2u}, {4, 2u}, {5, 1u}, {6, 1u}}) {
+        Environment environment = constant_environment(glm::vec3(0.f));
+        for (int k = 0; k < lights; ++k)
+            environment.distant_lights.push_back(disc_light({0.1f * float(k), 1, 0}, 0.2f, glm::vec3(1.f)));
+        const LightChoice choice(environment, 1);
+        std::vector<ShadowRay> rays;
+        std::vector<float> scratch;
+        choice.rays_at({0, 0, 0}, kLeaf, {}, rays, scratch);
+        EXPECT_EQ(rays.size(), std::size_t(lights) * rays_of_each);
+    }
 }
 
 TEST(LightChoice, ChoosingAFewOfManyHasTheRightMean) {
