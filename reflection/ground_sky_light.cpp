@@ -114,24 +114,33 @@ void GroundSkyLight::gather(const ShadedScene& scene, const RayQueries& queries,
 
     progress.begin("lighting the ground", nodes.size());
     const float near = queries.ray_offset(), far = std::numeric_limits<float>::infinity();
-    parallel_blocks(nodes.size(), 64, [&](std::size_t begin, std::size_t end) {
+    constexpr std::size_t kAtOnce = 64;
+    parallel_blocks(nodes.size(), kAtOnce, [&](std::size_t begin, std::size_t end) {
         progress.throw_if_stopped();
+        std::vector<Ray> rays;
         for (std::size_t n = begin; n < end; ++n) {
-            Level& level = levels_[nodes[n].level];
-            const glm::vec2 place = level.node_place(nodes[n].column, nodes[n].row);
-            const glm::vec3 origin(place.x, height, place.y);
-            glm::dvec3 change(0.0);
-            for (std::uint32_t k = 0; k < kDirections; ++k) {
-                RayHit hit;
-                if (!queries.first_hit(origin, directions[k], near, far, hit) || hit.ground)
-                    continue;
-                const std::uint32_t patch = scene.patches->triangle_patch[hit.triangle];
-                const bool front = glm::dot(directions[k], hit.geometric_normal) < 0;
-                change += glm::dvec3((front ? scene.radiance_front[patch] : scene.radiance_back[patch]) - sky[k]);
-            }
-            level.nodes[std::size_t(nodes[n].row * kNodes + nodes[n].column)] =
-                glm::vec3(change * (kPiDouble / kDirections));
+            const glm::vec2 place = levels_[nodes[n].level].node_place(nodes[n].column, nodes[n].row);
+            rays.push_back({{place.x, height, place.y}, {}, near, far});
         }
+        std::vector<RayHit> hits(rays.size());
+        std::vector<std::uint8_t> found(rays.size());
+        std::vector<glm::dvec3> changes(rays.size(), glm::dvec3(0.0));
+        for (std::uint32_t k = 0; k < kDirections;
+             ++k) { // neighbours' rays in one direction are parallel: they meet alike
+            for (Ray& ray : rays)
+                ray.direction = directions[k];
+            queries.first_hits(rays, hits, found);
+            for (std::size_t i = 0; i < rays.size(); ++i) {
+                if (!found[i] || hits[i].ground)
+                    continue;
+                const std::uint32_t patch = scene.patches->triangle_patch[hits[i].triangle];
+                const bool front = glm::dot(directions[k], hits[i].geometric_normal) < 0;
+                changes[i] += glm::dvec3((front ? scene.radiance_front[patch] : scene.radiance_back[patch]) - sky[k]);
+            }
+        }
+        for (std::size_t n = begin; n < end; ++n)
+            levels_[nodes[n].level].nodes[std::size_t(nodes[n].row * kNodes + nodes[n].column)] =
+                glm::vec3(changes[n - begin] * (kPiDouble / kDirections));
         progress.advance(end - begin);
     });
 }
