@@ -33,7 +33,8 @@ glm::vec3 within(const ReliefPoint& from, const glm::vec3& direction) {
 struct ReliefSurfaces::Entry {
     RayHit hit;
     std::uint32_t prism = SceneRelief::kNone;
-    bool passed = false; ///< an outside was reached before
+    bool outside = false; ///< of a mesh with relief, where the ray goes in
+    bool enters = false;  ///< relief that is seen from here
 };
 
 ReliefSurfaces::ReliefSurfaces(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
@@ -58,16 +59,22 @@ float ReliefSurfaces::strength_at(const Entry& entry) const {
     return relief_strength(relief_->shell.thickness_m(prism, weights) / std::max(entry.hit.distance * pixel_, 1e-30f));
 }
 
+ReliefSurfaces::Entry ReliefSurfaces::entry_at(const RayHit& hit, const glm::vec3& direction) const {
+    Entry entry{hit, hit.ground ? SceneRelief::kNone : relief_->prism[hit.triangle]};
+    entry.outside = entry.prism != SceneRelief::kNone && glm::dot(hit.geometric_normal, direction) < 0;
+    entry.enters = entry.outside && strength_at(entry) > 0;
+    return entry;
+}
+
 /// The next outside with relief; false where the ray ends: at nothing, or at what has no relief, which `hit` then has.
 bool ReliefSurfaces::next_entry(CameraHit& hit, Entry& last, float after, float before) const {
-    float near = last.passed ? after * (1 + 1e-6f) + 1e-3f * queries_.ray_offset() : 0.f;
-    for (RayHit next; queries_.first_hit(eye_, hit.direction, near, before, next);
-         near = next.distance * (1 + 1e-6f) + 1e-3f * queries_.ray_offset()) {
-        const std::uint32_t prism = next.ground ? SceneRelief::kNone : relief_->prism[next.triangle];
-        const bool outside = prism != SceneRelief::kNone && glm::dot(next.geometric_normal, hit.direction) < 0;
-        if (prism != SceneRelief::kNone && !outside && last.passed)
+    const auto beyond = [&](float distance) { return distance * (1 + 1e-6f) + 1e-3f * queries_.ray_offset(); };
+    float near = beyond(after);
+    for (RayHit next; queries_.first_hit(eye_, hit.direction, near, before, next); near = beyond(next.distance)) {
+        const Entry entry = entry_at(next, hit.direction);
+        if (entry.prism != SceneRelief::kNone && !entry.outside)
             continue; // where the ray comes out of the mesh again
-        if (const Entry entry{next, prism, true}; outside && strength_at(entry) > 0) {
+        if (entry.enters) {
             last = entry;
             return true;
         }
@@ -138,14 +145,15 @@ void ReliefSurfaces::first_hits(std::span<CameraHit> hits) const {
     first_hits_of_meshes(hits);
     for (std::size_t i = 0; i < hits.size(); ++i) {
         CameraHit& hit = hits[i];
-        if (!hit.found || hit.hit.ground || relief_->prism[hit.hit.triangle] == SceneRelief::kNone)
+        if (!hit.found)
+            continue;
+        const Entry entry = entry_at(hit.hit, hit.direction);
+        if (!entry.enters)
             continue;
         hit.found = false;
-        if (Entry entry; next_entry(hit, entry, 0, kInfinity)) {
-            entering.push_back(i);
-            entries.push_back(entry);
-            rays.push_back({eye_, hit.direction, 0, 0, 1});
-        }
+        entering.push_back(i);
+        entries.push_back(entry);
+        rays.push_back({eye_, hit.direction, 0, 0, 1});
     }
     if (entering.empty())
         return;

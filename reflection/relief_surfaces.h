@@ -71,6 +71,7 @@ class ReliefSurfaces {
   private:
     struct Entry;
     void first_hits_of_meshes(std::span<CameraHit> hits) const;
+    Entry entry_at(const RayHit& hit, const glm::vec3& direction) const;
     bool next_entry(CameraHit& hit, Entry& last, float after, float before) const;
     float strength_at(const Entry& entry) const;
     CameraHit met(const SurfaceHit& hit, const glm::vec3& direction) const;
