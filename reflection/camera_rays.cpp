@@ -58,11 +58,12 @@ glm::vec3 PixelRays::direction(std::uint32_t sample) const {
 }
 
 SquareRays::SquareRays(const CameraFrame& frame, const PictureOptions& options, int x, int y)
-    : frame_(frame), x_(float(x)), y_(float(y)) {
-    const std::uint64_t square = std::uint64_t(y + 1) * std::uint64_t(options.width + 2) + std::uint64_t(x + 1);
-    film_seed_ = hash64(hash64(options.seed ^ hash64(3)) + square);
-    light_pattern_ = pattern_of(options.seed, square, 4);
-}
+    : SquareRays(frame, options.seed, x, y,
+                 std::uint64_t(y + 1) * std::uint64_t(options.width + 2) + std::uint64_t(x + 1)) {}
+
+SquareRays::SquareRays(const CameraFrame& frame, std::uint64_t seed, int x, int y, std::uint64_t square)
+    : frame_(frame), x_(float(x)), y_(float(y)), places_(hash64(hash64(seed ^ hash64(3)) + square)),
+      light_pattern_(pattern_of(seed, square, 4)) {}
 
 glm::dvec3 displayable(const glm::vec3& radiance) {
     glm::dvec3 result(0.);

@@ -45,7 +45,7 @@ class SquareRays {
     SquareRays(const CameraFrame& frame, const PictureOptions& options, int x, int y);
 
     /// From the square's upper left corner.
-    glm::vec2 place(std::uint32_t sample) const { return PathNumbers(film_seed_, sample).pair(); }
+    glm::vec2 place(std::uint32_t sample) const { return places_.at(sample); }
     glm::vec3 direction(const glm::vec2& place) const { return frame_.direction(x_ + place.x, y_ + place.y); }
     /// For what is stratified over the rays from `begin` to `end`.
     SampleIndex index(std::uint32_t sample, std::uint32_t begin, std::uint32_t end) const {
@@ -53,9 +53,11 @@ class SquareRays {
     }
 
   private:
+    SquareRays(const CameraFrame& frame, std::uint64_t seed, int x, int y, std::uint64_t square);
+
     const CameraFrame& frame_;
     float x_, y_;
-    std::uint64_t film_seed_;
+    SobolPairs places_;
     std::uint32_t light_pattern_;
 };
 

@@ -9,9 +9,16 @@ namespace {
 
 constexpr std::size_t kPlain = 5, kWithLayers = 17; ///< weight, subject, radiance; direct, indirect, reflection, albedo
 
-/// Of the pixel before, its own and the pixel behind.
-glm::vec3 filter_weights(float place) {
-    return {pixel_filter(place + 0.5f), pixel_filter(place - 0.5f), pixel_filter(place - 1.5f)};
+constexpr int kFilterSteps = 512;
+
+/// The pixel filter at places from 0 to 1: of the pixel before, its own and the pixel behind.
+std::vector<glm::vec3> filter_table() {
+    std::vector<glm::vec3> table;
+    for (int k = 0; k <= kFilterSteps; ++k) {
+        const float place = float(k) / kFilterSteps;
+        table.push_back({pixel_filter(place + 0.5f), pixel_filter(place - 0.5f), pixel_filter(place - 1.5f)});
+    }
+    return table;
 }
 
 /// The most frequent; of equals the smallest.
@@ -26,7 +33,7 @@ std::uint32_t most_frequent_leaf(const std::vector<CameraSample>& samples) {
 
 Film::Film(const PictureOptions& options, const CameraFrame& frame)
     : width_(options.width), height_(options.height), channels_(options.layers ? kWithLayers : kPlain),
-      options_(options), frame_(frame) {
+      options_(options), frame_(frame), filter_(filter_table()) {
     bands_.resize(std::size_t((height_ + 2 + kBandRows - 1) / kBandRows));
 }
 
@@ -39,6 +46,12 @@ int Film::end_row(int band) const {
     return std::min(first_row(band) + kBandRows, height_ + 1);
 }
 
+glm::vec3 Film::filter_at(float place) const {
+    const float step = std::clamp(place, 0.f, 1.f) * kFilterSteps;
+    const int before = std::min(int(step), kFilterSteps - 1);
+    return glm::mix(filter_[std::size_t(before)], filter_[std::size_t(before) + 1], step - float(before));
+}
+
 /// `row` from 0: the row above the band's first.
 float* Film::sum(Band& band, int x, int row) const {
     return band.sums.data() + (std::size_t(row) * std::size_t(width_) + std::size_t(x)) * channels_;
@@ -46,12 +59,13 @@ float* Film::sum(Band& band, int x, int row) const {
 
 void Film::add_to_neighbours(Band& band, int x, int row, const CameraSample& sample, float weight) const {
     const SeenByRay& seen = sample.seen;
-    std::array<float, kWithLayers> values{};
+    std::array<float, kWithLayers> values;
     values[0] = 1;
     values[1] = seen.surface ? 1.f : 0.f;
     const auto put = [&](std::size_t at, const glm::vec3& rgb) {
+        const glm::dvec3 finite = displayable(rgb);
         for (std::size_t c = 0; c < 3; ++c)
-            values[at + c] = float(displayable(rgb)[c]);
+            values[at + c] = float(finite[c]);
     };
     put(2, seen.radiance);
     if (channels_ == kWithLayers) {
@@ -60,7 +74,7 @@ void Film::add_to_neighbours(Band& band, int x, int row, const CameraSample& sam
         put(11, seen.reflection);
         put(14, seen.albedo);
     }
-    const glm::vec3 across = weight * filter_weights(sample.place.x), down = filter_weights(sample.place.y);
+    const glm::vec3 across = weight * filter_at(sample.place.x), down = filter_at(sample.place.y);
     for (int j = 0; j < 3; ++j)
         for (int i = std::max(0, 1 - x); i < 3 && x + i - 1 < width_; ++i) {
             const float share = across[std::size_t(i)] * down[std::size_t(j)];

@@ -47,6 +47,7 @@ class Film {
         std::vector<float> sums;
         std::vector<Nearest> nearest; ///< with layers
     };
+    glm::vec3 filter_at(float place) const;
     float* sum(Band& band, int x, int row) const;
     void add_to_neighbours(Band& band, int x, int row, const CameraSample& sample, float weight) const;
     void store(Picture& picture, int x, int y) const;
@@ -55,6 +56,7 @@ class Film {
     std::size_t channels_;
     PictureOptions options_;
     CameraFrame frame_;
+    std::vector<glm::vec3> filter_; ///< the pixel filter at even steps over a pixel
     std::vector<Band> bands_;
 };
 

@@ -55,7 +55,12 @@ LightChoice::LightChoice(const Environment& environment, int light_samples)
 }
 
 LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32_t rays) {
-    Distant result{light, std::sin(std::min(light.half_angle, kPi / 2)), rays, {}};
+    Distant result{light,
+                   Cone(light.direction, light.half_angle),
+                   light.irradiance * radiance_over_density_of_disc(light.half_angle),
+                   std::sin(std::min(light.half_angle, kPi / 2)),
+                   rays,
+                   {}};
     std::stable_sort(result.light.texels.begin(), result.light.texels.end(),
                      [](const auto& a, const auto& b) { return place_of(a.direction) < place_of(b.direction); });
     double total = 0;
@@ -69,7 +74,7 @@ LightChoice::Distant LightChoice::prepare(const DistantLight& light, std::uint32
 /// As sample_light() does, but in logarithmic time, and along the curve.
 LightSample LightChoice::draw(const Distant& distant, glm::vec2 u) {
     if (distant.shares.empty())
-        return sample_light(distant.light, u.x, u.y);
+        return {distant.cone.sample(u.x, u.y), distant.disc_irradiance};
     const auto found = std::upper_bound(distant.shares.begin(), distant.shares.end() - 1, double(u.x));
     const double before = found == distant.shares.begin() ? 0 : found[-1], share = *found - before;
     const DistantLight::Texel& texel = distant.light.texels[std::size_t(found - distant.shares.begin())];
@@ -128,9 +133,7 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
             const std::uint32_t count = light < distant_.size() ? distant_[light].rays : 1;
             for (std::uint32_t k = 0; k < count; ++k)
                 add_ray(light, point, scattering, 1.f / float(count),
-                        multi_jittered(sample.index * count + k, sample.count * count,
-                                       sample.pattern + std::uint32_t(light)),
-                        rays);
+                        evenly_spread(sample.index * count + k, sample.pattern + std::uint32_t(light)), rays);
         }
         return;
     }
@@ -151,7 +154,7 @@ void LightChoice::rays_at(const glm::vec3& point, const Scattering& scattering, 
         // also chooses the place on the light.
         for (; pick < picks && (start + pick) * step < sum + double(scratch[light]); ++pick) {
             const auto place = float(std::clamp(((start + pick) * step - sum) / double(scratch[light]), 0.0, 1.0));
-            const float across = multi_jittered(sample.index * picks + pick, sample.count * picks, sample.pattern).y;
+            const float across = evenly_spread(sample.index * picks + pick, sample.pattern).y;
             add_ray(light, point, scattering, float(step / double(scratch[light])),
                     {std::min(place, 0x1.fffffep-1f), across}, rays);
         }

@@ -1,6 +1,7 @@
 #pragma once
 // Which lights to test at a point that is shaded: all of them when they are few, else some by what they would
 // contribute.
+#include "common/environment/cone.h"
 #include "common/environment/environment.h"
 #include "common/types.h"
 
@@ -58,6 +59,8 @@ class LightChoice {
         /// Its texels in the order of a curve that fills the sky, so that stratified numbers choose texels that lie
         /// apart.
         DistantLight light;
+        Cone cone;                 ///< of a disc
+        glm::vec3 disc_irradiance; ///< over the density of the cone's directions
         float sine_of_half_angle;
         std::uint32_t
             rays; ///< shadow rays where all lights are tested: more for wide lights, as their penumbras are wide

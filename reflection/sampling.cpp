@@ -1,4 +1,5 @@
 #include "reflection/sampling.h"
+#include "common/services/random.h"
 
 #include <algorithm>
 #include <array>
@@ -91,6 +92,13 @@ glm::vec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t
     const float jx = hashed_uniform(index, pattern * 0x967a889bu), jy = hashed_uniform(index, pattern * 0x368cc8b7u);
     return {std::min(kBelowOne, (float(sx) + (float(sy) + jx) / float(rows)) / float(columns)),
             std::min(kBelowOne, (float(index) + jy) / float(count))};
+}
+
+glm::vec2 evenly_spread(std::uint32_t index, std::uint32_t pattern) {
+    // 1/g and 1/g^2 times 2^32, where g^3 = g + 1.
+    const std::uint32_t x = std::uint32_t(hash64(pattern)) + index * 3242174889u,
+                        y = std::uint32_t(hash64(pattern) >> 32) + index * 2447445414u;
+    return {float(x >> 8) * 0x1p-24f, float(y >> 8) * 0x1p-24f};
 }
 
 float stratified(std::uint32_t index, std::uint32_t count, std::uint32_t pattern) {

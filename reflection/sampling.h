@@ -9,6 +9,11 @@ namespace kokage {
 /// Sampling", Pixar Technical Memo 13-01, 2013). Different patterns are independent, also in the order of their points.
 glm::vec2 multi_jittered(std::uint32_t index, std::uint32_t count, std::uint32_t pattern);
 
+/// Point `index` of an endless sequence in [0,1)^2 whose first points are spread evenly, however many: Roberts' R2
+/// ("The Unreasonable Effectiveness of Quasirandom Sequences", 2018), shifted as the pattern says. A fifth of the price
+/// of multi_jittered().
+glm::vec2 evenly_spread(std::uint32_t index, std::uint32_t pattern);
+
 /// Point `index` of `count` jittered strata of [0,1), in an order that depends on the pattern.
 float stratified(std::uint32_t index, std::uint32_t count, std::uint32_t pattern);
 

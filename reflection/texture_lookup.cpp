@@ -6,13 +6,17 @@
 namespace kokage {
 namespace {
 
+/// `texel` from -1 to 2 size, without a division.
 int wrap(int texel, int size, TextureWrap mode) {
     if (mode == TextureWrap::clamp)
         return std::clamp(texel, 0, size - 1);
-    if (mode == TextureWrap::repeat)
-        return (texel % size + size) % size;
-    const int period = (texel % (2 * size) + 2 * size) % (2 * size);
-    return period < size ? period : 2 * size - 1 - period;
+    if (texel < 0)
+        texel += 2 * size;
+    if (texel >= 2 * size)
+        texel -= 2 * size;
+    if (texel < size)
+        return texel;
+    return mode == TextureWrap::repeat ? texel - size : 2 * size - 1 - texel;
 }
 
 } // namespace

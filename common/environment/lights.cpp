@@ -1,3 +1,4 @@
+#include "common/environment/cone.h"
 #include "common/environment/environment.h"
 
 #include <algorithm>
@@ -6,27 +7,38 @@
 namespace kokage {
 
 // Works with 1 - cos, so that a sun of 0.27 degrees does not drown in rounding.
-glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u1) {
-    if (half_angle <= 0)
-        return axis;
-    const float half_sine = std::sin(0.5f * std::min(half_angle, kPi));
-    const float height = u0 * 2 * half_sine * half_sine; // 1 - cos(theta)
-    const float radius = std::sqrt(std::max(0.f, height * (2 - height))), phi = 2 * kPi * u1;
+Cone::Cone(const glm::vec3& axis, float half_angle) : axis_(axis) {
     // Duff et al. 2017, "Building an Orthonormal Basis, Revisited", listing 3.
     const float sign = std::copysign(1.f, axis.z), a = -1 / (sign + axis.z), b = axis.x * axis.y * a;
-    const glm::vec3 tangent(1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x);
-    const glm::vec3 bitangent(b, sign + axis.y * axis.y * a, -axis.y);
-    return glm::normalize((1 - height) * axis + radius * (std::cos(phi) * tangent + std::sin(phi) * bitangent));
+    tangent_ = {1 + sign * axis.x * axis.x * a, sign * b, -sign * axis.x};
+    bitangent_ = {b, sign + axis.y * axis.y * a, -axis.y};
+    const float half_sine = std::sin(0.5f * std::clamp(half_angle, 0.f, kPi));
+    height_ = 2 * half_sine * half_sine;
+}
+
+glm::vec3 Cone::sample(float u0, float u1) const {
+    if (!(height_ > 0))
+        return axis_;
+    const float height = u0 * height_; // 1 - cos(theta)
+    const float radius = std::sqrt(std::max(0.f, height * (2 - height))), phi = 2 * kPi * u1;
+    return glm::normalize((1 - height) * axis_ + radius * (std::cos(phi) * tangent_ + std::sin(phi) * bitangent_));
+}
+
+glm::vec3 sample_cone(const glm::vec3& axis, float half_angle, float u0, float u1) {
+    return Cone(axis, half_angle).sample(u0, u1);
+}
+
+/// Radiance L within half angle a gives a facing surface L pi sin^2(a) (beyond a right angle L pi); L over the density
+/// is L 2 pi (1 - cos(a)). Their ratio is 1/cos^2(a/2) (beyond: 2 (1 - cos(a))).
+float radiance_over_density_of_disc(float half_angle) {
+    const float half_cosine = std::cos(0.5f * half_angle), squared = half_cosine * half_cosine;
+    return half_angle <= kPi / 2 ? 1 / squared : 4 * (1 - squared);
 }
 
 LightSample sample_light(const DistantLight& light, float u0, float u1) {
-    if (light.texels.empty()) {
-        // Radiance L within half angle a gives a facing surface L pi sin^2(a) (beyond a right angle L pi); L over the
-        // density is L 2 pi (1 - cos(a)). Their ratio is 1/cos^2(a/2) (beyond: 2 (1 - cos(a))).
-        const float half_cosine = std::cos(0.5f * light.half_angle), squared = half_cosine * half_cosine;
-        const float ratio = light.half_angle <= kPi / 2 ? 1 / squared : 4 * (1 - squared);
-        return {sample_cone(light.direction, light.half_angle, u0, u1), light.irradiance * ratio};
-    }
+    if (light.texels.empty())
+        return {sample_cone(light.direction, light.half_angle, u0, u1),
+                light.irradiance * radiance_over_density_of_disc(light.half_angle)};
     double total = 0;
     for (const DistantLight::Texel& texel : light.texels)
         total += luminance(texel.irradiance);

@@ -71,10 +71,20 @@ glm::vec2 PathNumbers::pair() {
         const float first = random_.uniform();
         return {first, random_.uniform()};
     }
-    const std::uint64_t key = hash64(seed_ + std::uint64_t(dimension_++)), second_key = hash64(key);
-    const std::uint32_t index = shuffled(index_, std::uint32_t(key));
-    return {unit_float(scramble_reversed(index, std::uint32_t(key >> 32))),
-            unit_float(scramble_reversed(second_sobol_reversed(index), std::uint32_t(second_key)))};
+    return SobolPairs::of_hash(seed_, dimension_++).at(index_);
+}
+
+SobolPairs::SobolPairs(std::uint64_t seed, int dimension) : SobolPairs(of_hash(hash64(seed), dimension)) {}
+
+SobolPairs SobolPairs::of_hash(std::uint64_t hashed_seed, int dimension) {
+    const std::uint64_t key = hash64(hashed_seed + std::uint64_t(dimension));
+    return SobolPairs(Keys{key, hash64(key)});
+}
+
+glm::vec2 SobolPairs::at(std::uint32_t index) const {
+    const std::uint32_t place = shuffled(index, std::uint32_t(keys_.first));
+    return {unit_float(scramble_reversed(place, std::uint32_t(keys_.first >> 32))),
+            unit_float(scramble_reversed(second_sobol_reversed(place), std::uint32_t(keys_.second)))};
 }
 
 } // namespace kokage

@@ -6,6 +6,22 @@
 
 namespace kokage {
 
+/// An Owen-scrambled (0,2)-sequence of points in [0, 1)^2: the `dimension`-th pair of the paths that share a seed.
+class SobolPairs {
+  public:
+    explicit SobolPairs(std::uint64_t seed, int dimension = 0);
+    /// Of hash64(seed).
+    static SobolPairs of_hash(std::uint64_t hashed_seed, int dimension);
+    glm::vec2 at(std::uint32_t index) const;
+
+  private:
+    struct Keys {
+        std::uint64_t first, second;
+    };
+    explicit SobolPairs(const Keys& keys) : keys_(keys) {}
+    Keys keys_;
+};
+
 /// Path `index` of a set of paths that share a seed. Its n-th pair, seen over indices 0, 1, 2, ..., is an
 /// Owen-scrambled (0,2)-sequence of its own; pairs are shuffled against each other (padding). Sets with different seeds
 /// are independent. Each number alone is uniform in [0, 1), so that estimates are unbiased for any count of paths.

@@ -33,6 +33,15 @@ std::vector<glm::vec2> points_of(std::uint64_t seed, int count, int dimension) {
     return points;
 }
 
+TEST(PathNumbers, PairsAloneAreThoseOfPaths) {
+    for (const std::uint64_t seed : {0ull, 99ull})
+        for (std::uint32_t index : {0u, 1u, 1000u}) {
+            PathNumbers numbers(seed, index);
+            EXPECT_EQ(numbers.pair(), SobolPairs(seed).at(index));
+            EXPECT_EQ(numbers.pair(), SobolPairs(seed, 1).at(index));
+        }
+}
+
 TEST(PathNumbers, EveryPairIsANet) {
     for (const std::uint64_t seed : {1ull, 2ull, 12345ull})
         for (const int dimension : {0, 1, 5, 7})

@@ -1,6 +1,7 @@
 #include "common/services/random.h"
 #include "reflection/sampling.h"
 
+#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <set>
@@ -37,6 +38,39 @@ TEST(Sampling, AnyCountGivesPointsInTheSquareWithTheRightMean) {
         EXPECT_NEAR(mean.x, 0.5, 0.02) << count;
         EXPECT_NEAR(mean.y, 0.5, 0.02) << count;
     }
+}
+
+/// How far the share of points in boxes at the origin is from their area, at most (star discrepancy, on a grid).
+double discrepancy(const std::vector<glm::vec2>& points) {
+    double most = 0;
+    for (int i = 1; i <= 16; ++i)
+        for (int j = 1; j <= 16; ++j) {
+            int within = 0;
+            for (const glm::vec2& p : points)
+                within += p.x * 16 < float(i) && p.y * 16 < float(j);
+            most = std::max(most, std::abs(double(within) / double(points.size()) - i * j / 256.));
+        }
+    return most;
+}
+
+TEST(Sampling, EvenlySpreadPointsAreEvenAfterAnyCountOfThem) {
+    Random random(5);
+    for (const std::uint32_t count : {8u, 30u, 100u, 300u}) {
+        double even = 0, independent = 0;
+        for (std::uint32_t pattern = 0; pattern < 20; ++pattern) {
+            std::vector<glm::vec2> points, random_points;
+            for (std::uint32_t k = 0; k < count; ++k) {
+                points.push_back(evenly_spread(k, pattern));
+                ASSERT_TRUE(points.back().x >= 0 && points.back().x < 1 && points.back().y >= 0 && points.back().y < 1);
+                const float x = random.uniform();
+                random_points.push_back({x, random.uniform()});
+            }
+            even += discrepancy(points);
+            independent += discrepancy(random_points);
+        }
+        EXPECT_LT(even, (count < 20 ? 0.75 : 0.5) * independent) << count;
+    }
+    EXPECT_NE(evenly_spread(0, 1), evenly_spread(0, 2));
 }
 
 TEST(Sampling, StratifiedNumbersFillTheirStrata) {
