@@ -68,7 +68,7 @@ TEST(Sampling, EvenlySpreadPointsAreEvenAfterAnyCountOfThem) {
             even += discrepancy(points);
             independent += discrepancy(random_points);
         }
-        EXPECT_LT(even, (count < 20 ? 0.75 : 0.5) * independent) << count;
+        EXPECT_LT(even, (count < 50 ? 0.75 : 0.5) * independent) << count;
     }
     EXPECT_NE(evenly_spread(0, 1), evenly_spread(0, 2));
 }
