@@ -26,8 +26,7 @@ GlossShading::GlossShading(const ShadedScene& scene, const Environment& environm
                                 "one bake of the surroundings"});
         return;
     }
-    // The horizon's correction reads narrower lobes than the surface's own.
-    remainder_.emplace(environment, std::clamp(0.4f * lobes->least, kLeastRoughness, 1.f),
+    remainder_.emplace(environment, std::clamp(lobes->least, kLeastRoughness, 1.f),
                        std::clamp(lobes->most, kLeastRoughness, 1.f), progress, report);
     from_maps_.emplace(scene, environment, surfaces);
     for (const SurfaceLook& look : scene.looks)
@@ -55,7 +54,7 @@ std::optional<glm::vec3> GlossShading::met(const SurfacePoint& at, const glm::ve
                                            ShadingScratch& scratch) const {
     if (at.relief && at.relief->hides(direction))
         return surfaces_.solved_radiance(at); // bark opposite
-    return incoming_.along(at.point, direction, sample, scratch);
+    return incoming_.through_lobe(at.point, direction, at.roughness, sample, scratch);
 }
 
 glm::vec3 GlossShading::light_of_ray(const SurfacePoint& at, const glm::vec3& direction, const glm::vec2& numbers,

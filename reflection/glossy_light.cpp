@@ -14,13 +14,20 @@
 namespace kokage {
 namespace {
 
-/// Narrower lobes than a quarter pixel blur the image no less to see, and take texels as the square of what they are
+/// Narrower lobes than half a pixel blur the image no less to see, and take texels as the square of what they are
 /// narrower (123 million, 7 GB, for a mirror's). Images of less than 200 columns are smooth ones that stand for a sky:
 /// there lobes may be as narrow as costs nothing. Finer ones than of 1,000 columns are not shown finer.
 double finest_roughness(const Image& image) {
-    constexpr double kPixels = 0.25, kFinest = 0.0015, kCheap = 0.008; // widths in radians
+    constexpr double kPixels = 0.5, kFinest = 0.0015, kCheap = 0.008; // widths in radians
     const double pixel = 2 * kPiDouble / std::max(image.width, 1);
     return lobe_of_width(LobeKind::ggx, std::clamp(kPixels * pixel, kFinest, kCheap)).parameter;
+}
+
+/// The horizon's correction reads narrower lobes than the surface's own, but of those that are narrow themselves only
+/// where a surface is seen within a degree or two of its plane.
+float least_read(float least_roughness) {
+    constexpr float kOfOwn = 0.4f, kNarrow = 0.12f;
+    return std::max(kOfOwn * least_roughness, std::min(least_roughness, kNarrow));
 }
 
 ShellSettings shell_settings(const Image& image, float least_roughness, float most_roughness) {
@@ -90,9 +97,10 @@ glm::vec3 wide_lights_in(const Environment& environment, const glm::vec3& direct
 
 GlossyRemainder::GlossyRemainder(const Environment& environment, float least_roughness, float most_roughness,
                                  Progress& progress, WorkReport& report)
-    : map_(shell_settings(environment.remainder, least_roughness, most_roughness)), horizon_(LobeKind::ggx) {
-    report_narrowest(environment.remainder, least_roughness, report);
-    report_range(environment.remainder, least_roughness, most_roughness, report);
+    : map_(shell_settings(environment.remainder, least_read(least_roughness), most_roughness)),
+      horizon_(LobeKind::ggx) {
+    report_narrowest(environment.remainder, least_read(least_roughness), report);
+    report_range(environment.remainder, least_read(least_roughness), most_roughness, report);
     Environment remainder;
     remainder.remainder = with_square_pixels(environment.remainder);
     const std::unique_ptr<Baker> baker =

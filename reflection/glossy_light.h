@@ -16,8 +16,8 @@ glm::vec3 wide_lights_in(const Environment& environment, const glm::vec3& direct
 /// The environment's remainder through GGX lobes, from a multi-scale map with the horizon's correction. Thread-safe.
 class GlossyRemainder {
   public:
-    /// Bakes the lobes of a range of roughness, 0 < least <= most <= 1; of those that are narrower than the
-    /// environment's pixels the narrowest that isn't. Adds its work to the report.
+    /// For surfaces of a range of roughness, 0 < least <= most <= 1. Of lobes that are narrower than half a pixel of
+    /// the environment it bakes the narrowest that isn't. Adds its work to the report.
     GlossyRemainder(const Environment& environment, float least_roughness, float most_roughness, Progress& progress,
                     WorkReport& report);
     /// As if nothing stood in the way. `normal`, `mirrored` unit.

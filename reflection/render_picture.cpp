@@ -188,7 +188,7 @@ Picture render_picture(const ShadedScene& scene, const RayQueries& queries, cons
     const GroundLook ground(scene, queries, environment, backdrop, camera, options);
     WorkReport report;
     const GroundShading ground_light(scene, queries, environment, backdrop, ground, lights, progress);
-    const IncomingRadiance incoming(queries, surfaces, ground, ground_light);
+    const IncomingRadiance incoming(queries, environment, surfaces, ground, ground_light);
     GlossShading gloss(scene, environment, surfaces, incoming, lobes_to_bake(scene, frame, options.skips, report),
                        progress, report);
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress, report);

@@ -8,8 +8,7 @@
 namespace kokage {
 namespace {
 
-constexpr float kMostTurn = 8;             ///< times the light that the mesh gets
-constexpr float kLeastMetRoughness = 0.3f; ///< of what rays after the camera's meet
+constexpr float kMostTurn = 8; ///< times the light that the mesh gets
 
 /// Lights that relief hides.
 void leave_out_hidden(const ReliefPoint& relief, ShadingScratch& scratch) {
@@ -122,21 +121,20 @@ glm::vec3 SurfaceShading::solved_radiance(const SurfacePoint& at) const {
     return at.texture * (at.front ? scene_.radiance_front[at.patch] : scene_.radiance_back[at.patch]);
 }
 
-glm::vec3 SurfaceShading::met_radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
-                                       ShadingScratch& scratch) const {
+glm::vec3 SurfaceShading::met_radiance(const SurfacePoint& at, const glm::vec3& direction, const MetGloss& gloss,
+                                       SampleIndex sample, ShadingScratch& scratch) const {
     if (!pixel_shadows_)
         return solved_radiance(at);
     glm::vec3 light = at.texture * (at.front ? scene_.indirect_front[at.patch] : scene_.indirect_back[at.patch]);
-    if (!scene_.gloss_front.empty())
+    if (gloss.by_solution && !scene_.gloss_front.empty())
         light += at.gloss_texture * (at.front ? scene_.gloss_front[at.patch] : scene_.gloss_back[at.patch]);
-    // A narrower lobe would show a light to one ray in a thousand. No ray of the lobe finds wide lights from here.
     const Scattering scattering{at.normal,
                                 at.optics.reflectance,
                                 at.optics.transmittance,
                                 at.gloss,
                                 glm::reflect(direction, at.normal),
-                                std::max(at.roughness, kLeastMetRoughness),
-                                true};
+                                gloss.roughness(at),
+                                gloss.by_solution};
     const LightFromLights lights = light_from_lights(lights_, queries_, at.point, scattering, sample, scratch);
     return light + lights.scattered + lights.reflected;
 }

@@ -44,6 +44,14 @@ struct SurfaceRadiance {
     glm::vec3 total() const { return direct + indirect + reflection; }
 };
 
+/// What the gloss of a surface shows to a ray that meets it after the camera's.
+struct MetGloss {
+    /// The solution's, and all split-off lights; else narrow lights alone: further rays find the rest.
+    bool by_solution = true;
+    float least_roughness = 0.3f; ///< by which lights are seen: narrower lobes would show one to one ray in a thousand
+    float roughness(const SurfacePoint& at) const { return std::max(at.roughness, least_roughness); }
+};
+
 /// Where a point finds its solved light: at its patch, or on smooth surfaces at its triangle's corners.
 struct LightPlaces {
     std::array<std::uint32_t, 3> places{};
@@ -72,8 +80,8 @@ class SurfaceShading {
     glm::vec3 solved_radiance(const SurfacePoint& at) const;
     /// For rays that left a point of the scene: solved indirect light, and lights tested at this very point, because
     /// what stands near enough to be met often stands in its light.
-    glm::vec3 met_radiance(const SurfacePoint& at, const glm::vec3& direction, SampleIndex sample,
-                           ShadingScratch& scratch) const;
+    glm::vec3 met_radiance(const SurfacePoint& at, const glm::vec3& direction, const MetGloss& gloss,
+                           SampleIndex sample, ShadingScratch& scratch) const;
     /// Radiance of the mesh, untextured: of indirect light, or of all light without shadows per pixel.
     glm::vec3 solved(const SurfacePoint& at) const;
 

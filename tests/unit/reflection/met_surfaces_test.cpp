@@ -1,4 +1,5 @@
 // What a mirror shows of other surfaces, against path tracing.
+#include "common/environment/lat_long.h"
 #include "reflection/path_traced_picture.h"
 #include "tests/unit/reflection/picture_scenes.h"
 
@@ -46,8 +47,80 @@ TEST(MetSurfaces, MirrorLightsThatAreWiderThanTheirLobe) {
         Environment light = constant_environment(glm::vec3(0.f));
         light.distant_lights.push_back(disc_light({1, 1, 0}, 0.5f, glm::vec3(1.f)));
         const double truth = scene.shown(light, 400, true).g, fast = scene.shown(light, 100, false).g;
-        // Smoother ones than of 0.3 are met as if they were of that.
-        EXPECT_NEAR(fast / truth, 1, roughness < 0.3f ? 0.15 : 0.04) << roughness;
+        EXPECT_NEAR(fast / truth, 1, 0.04) << roughness;
+    }
+}
+
+/// Light from about where the panel mirrors the mirror's view to, and nearly none from elsewhere.
+Environment bright_around(const glm::vec3& direction) {
+    Environment environment;
+    environment.remainder = Image(128, 64, 3);
+    for (int y = 0; y < 64; ++y)
+        for (int x = 0; x < 128; ++x)
+            for (int c = 0; c < 3; ++c)
+                environment.remainder.at(x, y)[c] =
+                    glm::dot(glm::vec3(pixel_direction(x, y, 128, 64)), glm::normalize(direction)) > 0.97f
+                        ? float(c + 1)
+                        : 0.05f;
+    return environment;
+}
+
+TEST(MetSurfaces, MirrorWhatTheyFaceAndNotItsMean) {
+    Gloss gloss;
+    gloss.normal_reflectance = {0.8f, 0.5f, 0.3f};
+    for (const float roughness : {0.02f, 0.1f, 0.25f}) {
+        gloss.roughness = roughness;
+        PanelInMirror scene(gloss);
+        scene.scene.gloss_front.assign(2, glm::vec3(50.f)); // of the solution, which knows no direction
+        scene.scene.gloss_back = scene.scene.gloss_front;
+        for (const glm::vec3& place : {glm::vec3(1, 1, 0), glm::vec3(-1, 1, 0)}) { // the second behind the panel
+            const Environment light = bright_around(place);
+            const glm::dvec3 truth = scene.shown(light, 200, true), fast = scene.shown(light, 64, false);
+            for (std::size_t c = 0; c < 3; ++c)
+                EXPECT_NEAR(fast[c], truth[c], 0.04 * truth[c] + 0.006 * double(c + 1)) // the map's lobe is a bit wider
+                    << roughness << " " << place.x << " " << c;
+        }
+    }
+}
+
+TEST(MetSurfaces, BetweenMirrorsAndRoughOnesChangeGradually) {
+    Gloss gloss;
+    gloss.normal_reflectance = glm::vec3(0.8f);
+    const Environment light = bright_around({1, 1, 0});
+    const auto shown = [&](float roughness) {
+        gloss.roughness = roughness;
+        PanelInMirror scene(gloss);
+        scene.scene.gloss_front.assign(2, glm::vec3(0.3f));
+        scene.scene.gloss_back = scene.scene.gloss_front;
+        return scene.shown(light, 64, false).g;
+    };
+    const double mirror = shown(0.3f), between = shown(0.4f), rough = shown(0.5f);
+    EXPECT_GT(mirror, 1.2 * between);
+    EXPECT_GT(between, 1.2 * rough);
+}
+
+/// Two mirrors that face each other, seen aslant: their light comes from ever fewer of many reflections.
+TEST(MetSurfaces, ShowManyMirrorsInARow) {
+    PatchScene patches;
+    patches.optics.resize(1);
+    add_rectangle(patches, {-1, 0, 3}, {0, 4, 0}, {0, 0, -6});
+    add_rectangle(patches, {1, 0, 3}, {0, 0, -6}, {0, 4, 0});
+    ShadedScene scene = evenly_shaded(patches, glm::vec3(0.f));
+    scene.looks.resize(1);
+    scene.looks[0].gloss.normal_reflectance = glm::vec3(0.7f);
+    scene.looks[0].gloss.roughness = 0.02f;
+    scene.triangle_look.assign(4, 0);
+    const RayQueries queries(patches);
+    const Environment white = constant_environment(glm::vec3(1.f));
+    for (const float height : {2.5f, 1.7f}) { // what is seen leaves after 3 and after 5 reflections
+        const Camera camera = camera_at({0.9f, height, 0}, {-1, height + 0.4f, 0}, 0.02f);
+        const auto shown = [&](const auto& draw, int samples) {
+            return mean_of(
+                       draw(scene, queries, white, camera, without_ground(8, 8, samples), silent_progress()).radiance)
+                .g;
+        };
+        const double truth = shown(render_path_traced, 1000), fast = shown(render_picture, 64);
+        EXPECT_NEAR(fast / truth, 1, 0.04) << height;
     }
 }
 
