@@ -14,6 +14,7 @@
 #include "viewer/write_json.h"
 
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <memory>
@@ -82,15 +83,27 @@ void print_layer(const LayerComparison& layer) {
         print_figures(layer.name.c_str(), *layer.difference, 1);
     if (layer.differing_share)
         std::printf("%-20s differs in %.4g %% of the pixels\n", layer.name.c_str(), 100 * *layer.differing_share);
-    if (layer.pixels_finite_in_one > 0)
-        std::printf("%-20s %s where only one picture is finite, in no figure\n", "",
-                    counted(layer.pixels_finite_in_one, "pixel", "pixels").c_str());
+    const auto left_out = [](std::size_t pixels, const std::string& where) {
+        if (pixels > 0)
+            std::printf("%-20s %s %s, in no figure\n", "", counted(pixels, "pixel", "pixels").c_str(), where.c_str());
+    };
+    left_out(layer.pixels_finite_in_one, "where only one picture is finite");
+    left_out(layer.pixels_finite_in_none, "where neither picture is finite");
+    std::array<char, 64> horizon;
+    std::snprintf(horizon.data(), horizon.size(), "farther than %.3g m (the horizon)", layer.horizon_m);
+    left_out(layer.pixels_at_horizon, horizon.data());
 }
 
 Json layer_json(const LayerComparison& layer) {
     Json json = layer.difference ? figures_json(*layer.difference) : Json::object();
-    if (layer.difference)
+    if (layer.difference) {
         json["pixels_finite_in_one"] = layer.pixels_finite_in_one;
+        json["pixels_finite_in_none"] = layer.pixels_finite_in_none;
+    }
+    if (layer.pixels_at_horizon > 0) {
+        json["pixels_at_horizon"] = layer.pixels_at_horizon;
+        json["horizon_m"] = layer.horizon_m;
+    }
     if (layer.differing_share)
         json["differing_share"] = *layer.differing_share;
     return json;

@@ -13,7 +13,12 @@ struct LayerComparison {
     std::string name;
     /// Of layers of numbers, over the values that are finite in both.
     std::optional<DifferenceFigures> difference;
-    std::size_t pixels_finite_in_one = 0; ///< so many pixels are finite in one picture alone: what is met differs
+    /// So many pixels are finite in one picture alone, because what is met differs, or in neither.
+    std::size_t pixels_finite_in_one = 0, pixels_finite_in_none = 0;
+    /// Of depth: so many pixels are as far as the horizon in one picture or both, where a hair's breadth in the pixel
+    /// is miles away. They are in no figure.
+    std::size_t pixels_at_horizon = 0;
+    double horizon_m = 0; ///< from there on
     /// Of layers of names (channel "id"): the share of pixels that differ. A difference of names means nothing.
     std::optional<double> differing_share;
 };

@@ -77,7 +77,27 @@ TEST(Compare, LayersAreComparedByWhatTheyHold) {
     EXPECT_EQ(layers["depth"]["pixels_finite_in_one"], 2);
     EXPECT_EQ(layers["leaf"], nlohmann::json({{"differing_share", 0.125}}));
     EXPECT_NE(run.output.find("2 pixels where only one picture is finite"), std::string::npos) << run.output;
+    EXPECT_EQ(layers["depth"]["pixels_finite_in_none"], 2);
+    EXPECT_NE(run.output.find("2 pixels where neither picture is finite"), std::string::npos) << run.output;
+    EXPECT_FALSE(layers["depth"].contains("pixels_at_horizon"));
     EXPECT_NE(run.output.find("leaf                 differs in 12.5 % of the pixels"), std::string::npos) << run.output;
+}
+
+TEST(Compare, DepthAtTheHorizonIsInNoFigure) {
+    TemporaryFolder folder;
+    Image depth_a(8, 1, 1), depth_b(8, 1, 1);
+    depth_a.pixels = {10.5f, 10, 10, 10, 10, 2e6f, 3e8f, 10};
+    depth_b.pixels = {10, 10, 10, 10, 10, 9e5f, 4e4f, 5e7f};
+    for (const auto& [file, depth] : {std::pair("a.exr", &depth_a), {"b.exr", &depth_b}})
+        save_layers(folder / file, {{"", {"R", "G", "B"}, Image(8, 1, 3)}, {"depth", {"Z"}, *depth}});
+    const ProgramRun run = run_kokage({"compare", "a.exr", "b.exr", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const auto depth = nlohmann::json::parse(read_text(folder / "r.json"))["layers"]["depth"];
+    EXPECT_NEAR(double(depth["mean"]), 0.1, 1e-6) << "of the five that are near in both";
+    EXPECT_EQ(depth["pixels_at_horizon"], 3);
+    EXPECT_EQ(depth["pixels_finite_in_none"], 0);
+    EXPECT_NE(run.output.find("3 pixels farther than 1e+03 m (the horizon), in no figure"), std::string::npos)
+        << run.output;
 }
 
 TEST(Compare, ReflectionMapsOfDifferentFilesAreCompared) {
