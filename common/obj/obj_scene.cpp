@@ -6,7 +6,9 @@
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 
+#include <algorithm>
 #include <array>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <istream>
@@ -21,6 +23,7 @@ namespace {
 constexpr std::uint64_t kMaximumFile = 0xffffffffu;
 constexpr std::size_t kMaximumLine = std::size_t(1) << 16;
 constexpr int kMaximumCorners = 1024;
+constexpr double kLargestCoordinate = 1e30;
 constexpr std::size_t kMaximumMeshes = std::size_t(1) << 16;
 
 /// A stream over bytes that lie elsewhere.
@@ -116,15 +119,30 @@ class ObjReader {
             if (end - begin > 7 && std::memcmp(bytes.data() + begin, "mtllib", 6) == 0)
                 materials_.read_library(
                     std::string(bytes.begin() + std::ptrdiff_t(begin) + 7, bytes.begin() + std::ptrdiff_t(end)));
+            check_vertex({reinterpret_cast<const char*>(bytes.data()) + begin, end - begin}, number - 1);
             colors_.read_line({reinterpret_cast<const char*>(bytes.data()) + begin, end - begin});
             begin = i + 1;
         }
     }
 
+    /// The parser takes 0 for what is no number.
+    void check_vertex(std::string_view line, std::size_t number) const {
+        line.remove_prefix(std::min(line.find_first_not_of(" \t"), line.size()));
+        if (line.size() < 2 || line[0] != 'v' || (line[1] != ' ' && line[1] != '\t'))
+            return;
+        line.remove_prefix(1);
+        for (int k = 0; k < 3; ++k) {
+            line.remove_prefix(std::min(line.find_first_not_of(" \t+"), line.size()));
+            double value = 0;
+            const auto [end, error] = std::from_chars(line.data(), line.data() + line.size(), value);
+            if (error != std::errc() || !(std::abs(value) <= kLargestCoordinate))
+                fail("line " + std::to_string(number) +
+                     ": a vertex needs three finite numbers; mend or export it anew");
+            line.remove_prefix(std::size_t(end - line.data()));
+        }
+    }
+
     void add_position(const glm::vec3& position) {
-        if (!std::isfinite(position.x) || !std::isfinite(position.y) || !std::isfinite(position.z) ||
-            glm::any(glm::greaterThan(glm::abs(position), glm::vec3(1e30f))))
-            fail("vertex " + std::to_string(positions_.size() + 1) + " is not finite");
         if (positions_.size() >= kMaximumSceneVertices)
             fail("more than the limit of " + std::to_string(kMaximumSceneVertices) + " vertices");
         positions_.push_back(position);

@@ -94,22 +94,19 @@ void save_image(const std::filesystem::path& path, const Image& image, const Ima
         fail_to_write(name, "HDR holds no alpha; save as .exr");
     use_our_thread_count();
     OutputFile file(path);
+    if (png) { // the library does not tell of a full disk
+        file.write(encode_png(image, saving));
+        return file.commit();
+    }
     const auto output = OIIO::ImageOutput::create(extension.substr(1));
     if (!output)
         fail_to_write(name, one_line(OIIO::geterror(), kUnwritable));
-    bool good;
-    if (png) {
-        good = output->open(file.temporary_path().string(), png_spec(image, saving)) &&
-               write_png_pixels(*output, image, saving);
-    } else {
-        const Image stored = for_float_format(image, hdr);
-        OIIO::ImageSpec spec(stored.width, stored.height, stored.channels, OIIO::TypeDesc::FLOAT);
-        spec.attribute("oiio:ColorSpace", "Linear");
-        spec.attribute("DateTime", ""); // else the time of writing: the same picture would be other bytes each time
-        good = output->open(file.temporary_path().string(), spec) &&
-               output->write_image(OIIO::TypeDesc::FLOAT, stored.pixels.data());
-    }
-    if (!good || !output->close())
+    const Image stored = for_float_format(image, hdr);
+    OIIO::ImageSpec spec(stored.width, stored.height, stored.channels, OIIO::TypeDesc::FLOAT);
+    spec.attribute("oiio:ColorSpace", "Linear");
+    spec.attribute("DateTime", ""); // else the time of writing: the same picture would be other bytes each time
+    if (!output->open(file.temporary_path().string(), spec) ||
+        !output->write_image(OIIO::TypeDesc::FLOAT, stored.pixels.data()) || !output->close())
         fail_to_write(name, one_line(output->geterror(), kUnwritable));
     file.commit();
 }
