@@ -381,7 +381,7 @@ void complete_bake_options(BakeOptions& o) {
     complete_compression(o);
     complete_plan(o);
     if (!o.is_sequence)
-        check_surroundings(o.surroundings);
+        check_surroundings(o.surroundings, o.data);
     else if (!o.surroundings.sun.empty() || o.surroundings.turbidity)
         throw InputError("--sun and --turbidity shape the sky, not a video; add a light: --light sun:AZ,EL,R,G,B");
     for (const std::string& light : o.surroundings.lights)

@@ -106,7 +106,8 @@ void render(const CLI::App& app, RenderCommandOptions& options, const CommandCon
         for (const std::string& value : option->results())
             record.arguments.emplace_back(option->get_name(), value);
     const Stopwatch watch;
-    const CompleteRender complete = complete_render_options(app, options);
+    StageClock before, after;
+    const CompleteRender complete = before.run("read", [&] { return complete_render_options(app, options); });
 
     const AssembledScene scene = assemble_scene(complete.scene, *context.progress);
     context.progress->throw_if_stopped();
@@ -116,21 +117,23 @@ void render(const CLI::App& app, RenderCommandOptions& options, const CommandCon
     record.description = &complete.scene;
     record.scene = &scene;
     record.options = complete.options;
-    describe_subject(rendered.picture, record);
-    const float exposure = complete.options.picture.exposure_stops.value_or(
-        automatic_exposure_stops(rendered.picture.radiance, &rendered.picture.subject));
+    const float exposure = after.run("meter", [&] {
+        describe_subject(rendered.picture, record);
+        return complete.options.picture.exposure_stops.value_or(
+            automatic_exposure_stops(rendered.picture.radiance, &rendered.picture.subject));
+    });
     record.exposure_stops = double(exposure);
     record.work.warnings = complete.scene.warnings;
+    record.work.stages = before.stages();
     record.work.append(scene.report);
     record.work.append(rendered.report);
     record.picture = rendered.picture.report;
-    StageClock clock;
     const WritingFiles writing;
-    clock.run("write", [&] {
+    after.run("write", [&] {
         context.progress->begin("writing", 0);
         write_pictures(options, rendered.picture, exposure);
     });
-    record.work.stages.insert(record.work.stages.end(), clock.stages().begin(), clock.stages().end());
+    record.work.stages.insert(record.work.stages.end(), after.stages().begin(), after.stages().end());
     record.cpu_seconds = watch.cpu();
     record.wall_seconds = watch.wall();
     for (const std::filesystem::path& output : options.outputs)

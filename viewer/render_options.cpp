@@ -82,7 +82,7 @@ SceneDescription described_scene(const CLI::App& app, RenderCommandOptions& o) {
                          (fs::is_directory(o.tree.name, ignored) ? "is a folder" : "is not there") +
                          "; give a scene or a species file (.json); 'kokage render --example' prints a scene");
     check_tree_source(o.tree);
-    check_surroundings(o.surroundings);
+    check_surroundings(o.surroundings, o.data);
     SceneDescription scene = scene_of_tree(o.tree);
     scene.surroundings = o.surroundings;
     if (o.surroundings.ground == false)

@@ -44,24 +44,6 @@ Picture draw(const Shading& shading, const ShadeOptions& options, Progress& prog
     return render_picture(scene, queries, shading.environment, camera, options.picture, progress);
 }
 
-/// For a stranger's file in which nothing was taken for leaves; nothing to say of bare trees that know themselves bare.
-std::optional<std::string> no_foliage_warning(const Tree& tree) {
-    if (!tree.leaves.empty() || tree.branching_known)
-        return std::nullopt;
-    constexpr std::size_t kShown = 20;
-    std::string names;
-    for (std::size_t m = 0; m < std::min(tree.materials.size(), kShown); ++m) {
-        const std::string& name = tree.materials[m].name;
-        names += (names.empty() ? "" : ", ") + (name.empty() ? "one without a name" : "'" + shown_name(name) + "'");
-    }
-    if (tree.materials.size() > kShown)
-        names += " and " + std::to_string(tree.materials.size() - kShown) + " more";
-    return "no foliage was found, so no leaf was shaded: all is taken for bark; give --foliage NAME, a material, mesh "
-           "or "
-           "node of the file; its materials are " +
-           (names.empty() ? "none" : names);
-}
-
 void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress& progress) {
     s.tree =
         clock.run(options.tree.is_species() ? "grow" : "load", [&] { return obtain_tree(options.tree, progress); });
@@ -69,7 +51,7 @@ void shade(const ShadeOptions& options, Shading& s, StageClock& clock, Progress&
     s.environment = clock.run(
         "environment", [&] { return obtain_environment(options.surroundings, s.tree.origin, s.environment_report); });
     s.warnings = s.environment_report.warnings;
-    if (const std::optional<std::string> warning = no_foliage_warning(s.tree))
+    if (const std::optional<std::string> warning = no_foliage_warning(s.tree, "--foliage NAME"))
         s.warnings.push_back(*warning);
     if (const std::optional<std::string> night = night_warning(options.surroundings))
         s.warnings.push_back(*night);

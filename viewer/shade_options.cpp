@@ -198,7 +198,7 @@ void complete_shade_options(ShadeOptions& o) {
     complete_method(o);
     complete_materials(o);
     check_tree_source(o.tree);
-    check_surroundings(o.surroundings);
+    check_surroundings(o.surroundings, o.data);
     complete_outputs(o);
 }
 

@@ -12,7 +12,8 @@ struct StoppedBetweenFiles : Stopped {
     std::string kept;
 };
 
-/// From now on the signals set a flag. A second one ends the program at once, unless files are being written.
+/// From now on the signals set a flag. A second one ends the program at once, unless files are being written. A file
+/// that outgrows its limit (SIGXFSZ) fails as on a full disk, and is taken away, in place of ending the program.
 void watch_stop_signals();
 /// True once a signal has come.
 bool stop_signal_received();

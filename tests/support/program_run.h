@@ -27,6 +27,7 @@ struct ProgramRunOptions {
     /// > 0: SIGINT is sent so long after the program has begun to listen to it (which takes a busy machine a while).
     double interrupt_after_seconds = 0;
     std::uint64_t address_space = 0; ///< > 0: bytes that it may take (ulimit -v)
+    std::uint64_t file_size = 0;     ///< > 0: bytes that each of its files may have (ulimit -f)
 };
 
 /// Waits until a process catches SIGINT, has ended, or nothing can be known of it.
@@ -55,8 +56,10 @@ inline ProgramRun run_kokage(const std::vector<std::string>& arguments, const st
     argv.push_back(nullptr);
     const pid_t child = fork();
     if (child == 0) {
-        const rlimit limit{options.address_space, options.address_space};
-        if (options.address_space > 0 && setrlimit(RLIMIT_AS, &limit) != 0)
+        const rlimit limit{options.address_space, options.address_space},
+            of_files{options.file_size, options.file_size};
+        if ((options.address_space > 0 && setrlimit(RLIMIT_AS, &limit) != 0) ||
+            (options.file_size > 0 && setrlimit(RLIMIT_FSIZE, &of_files) != 0))
             _exit(125);
         if (chdir(folder.c_str()) != 0 || !freopen(output.c_str(), "w", stdout) ||
             !freopen(errors.c_str(), "w", stderr) || !freopen("/dev/null", "r", stdin))

@@ -9,6 +9,8 @@
 #include "viewer/scene/stage_clock.h"
 
 #include <algorithm>
+#include <array>
+#include <cstdio>
 #include <limits>
 #include <sstream>
 
@@ -60,15 +62,17 @@ class SceneAssembly {
           surfaces_(description, messages_) {}
 
     AssembledScene assemble() {
-        check_description();
+        clock_.run("check", [&] { check_description(); });
         clock_.run("trees", [&] { load_trees(); });
         clock_.run("objects", [&] { load_objects(); });
-        place_all();
-        clock_.run("merge", [&] { merge(); });
+        clock_.run("merge", [&] {
+            place_all();
+            merge();
+        });
         progress_.throw_if_stopped();
         clock_.run("environment", [&] { light(); });
         clock_.run("patches", [&] { make_scene(); });
-        set_camera();
+        clock_.run("camera", [&] { set_camera(); });
         report();
         return std::move(scene_);
     }
@@ -118,7 +122,8 @@ class SceneAssembly {
             check_memory(estimated_picture_bytes(description_.picture),
                          "a picture of " + std::to_string(description_.picture.width) + " x " +
                              std::to_string(description_.picture.height) + " pixels",
-                         "make it smaller, or ask for fewer samples");
+                         description_.picture.samples > 1 ? "make it smaller, or ask for fewer samples"
+                                                          : "make it smaller");
             check_memory(estimated_tree_bytes(leaves) + estimated_picture_bytes(description_.picture),
                          "a scene of " + count_text(std::uint64_t(leaves)) + " leaves, with its picture,",
                          "take fewer trees, or fewer leaves a tree");
@@ -161,6 +166,7 @@ class SceneAssembly {
                 loaded.box = box_of(loaded.tree);
                 loaded.foot = foot_of(loaded.tree, loaded.box);
                 take_notes(loaded.tree);
+                warn_of_missing_foliage(loaded.tree, placed.pointer);
             }
             progress_.throw_if_stopped();
             Thing& thing = things_.emplace_back();
@@ -212,6 +218,13 @@ class SceneAssembly {
                                "' is flat: it has no height that could be scaled; give 'size' "
                                "instead");
         return *placed.height_m / height;
+    }
+
+    void warn_of_missing_foliage(const Tree& tree, const std::string& pointer) {
+        const char* option = messages_.has_file() ? "'foliage': [NAME]" : "--foliage NAME";
+        if (const std::optional<std::string> warning = no_foliage_warning(tree, option))
+            scene_.report.warnings.push_back(
+                messages_.in_file((messages_.has_file() ? pointer : tree.source) + ": " + *warning));
     }
 
     void take_notes(const Tree& tree) {
@@ -283,7 +296,8 @@ class SceneAssembly {
             return obtain_environment(description_.surroundings, scene_.tree.origin, report, true,
                                       description_.environment_turn_degrees);
         });
-        scene_.report.warnings = report.warnings;
+        std::vector<std::string>& warnings = scene_.report.warnings;
+        warnings.insert(warnings.end(), report.warnings.begin(), report.warnings.end());
         if (const std::optional<std::string> night = night_warning(description_.surroundings))
             scene_.report.warnings.push_back(messages_.in_file(*night));
         if (description_.environment_turn_degrees != 0 && !is_environment_image(description_.surroundings))
@@ -314,6 +328,7 @@ class SceneAssembly {
             scene_.camera.position = glm::vec3(*asked.position - scene_.tree.origin);
             scene_.camera.target = glm::vec3(*asked.target - scene_.tree.origin);
             scene_.camera.vertical_field_of_view = angle;
+            check_height_of_camera();
             return;
         }
         if (asked.position || asked.target)
@@ -321,6 +336,25 @@ class SceneAssembly {
         const float azimuth = asked.azimuth_degrees ? float(*asked.azimuth_degrees * kPiDouble / 180)
                                                     : photographers_azimuth(scene_.environment);
         scene_.camera = frame_scene(scene_.patches, aspect, azimuth, angle);
+    }
+
+    /// The ground's underside is black.
+    void check_height_of_camera() const {
+        std::optional<float> ground;
+        if (scene_.patches.ground)
+            ground = scene_.patches.ground->height_m;
+        else if (description_.picture.ground == PictureGround::automatic)
+            ground = scene_.foot_height;
+        const double origin = scene_.tree.origin.y;
+        if (!ground || !(scene_.camera.position.y < *ground))
+            return;
+        std::array<char, 160> text;
+        std::snprintf(
+            text.data(), text.size(),
+            "its height, %.4g m, is below the ground's, %.4g m, and the ground is black from below; raise it, "
+            "or give \"ground\": false",
+            double(scene_.camera.position.y) + origin, double(*ground) + origin);
+        messages_.fail("/camera/position", text.data());
     }
 
     void report() {

@@ -21,6 +21,14 @@ std::vector<fs::path> folders_of_data(const fs::path& data) {
     return {data, data / "env", data / "trees", data / "objects", data / "textures"};
 }
 
+std::string looked_for_in(const std::string& name, const fs::path& data) {
+    if (fs::path(name).is_absolute())
+        return "";
+    return data.empty() ? "; it was looked for here alone: --data FOLDER (or KOKAGE_DATA) tells where else"
+                        : "; it was looked for here, in '" + data.string() +
+                              "' and in that folder's env, trees, objects and textures";
+}
+
 void find_in_data(const fs::path& data, const std::vector<std::string*>& names) {
     const std::vector<fs::path> folders = folders_of_data(data);
     std::error_code ignored;

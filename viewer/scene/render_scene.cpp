@@ -55,8 +55,11 @@ Picture render_solved(const AssembledScene& scene, const RenderOptions& options,
     const std::unique_ptr<Transport> transport =
         clock.run("transport", [&] { return make_transport(scene.patches, scene.tree, shading, progress); });
     progress.throw_if_stopped();
-    const std::vector<Optics> with_gloss = optics_with_gloss(shaded);
-    transport->set_optics(with_gloss);
+    std::vector<Optics> with_gloss;
+    clock.run("gloss", [&] {
+        with_gloss = optics_with_gloss(shaded);
+        transport->set_optics(with_gloss);
+    });
     Solution solution = clock.run("solve", [&] { return transport->solve(scene.environment, progress); });
     report.counts.insert(report.counts.end(), solution.report.counts.begin(), solution.report.counts.end());
     report.skips.insert(report.skips.end(), solution.report.skips.begin(), solution.report.skips.end());

@@ -5,6 +5,7 @@
 #include "common/services/count_text.h"
 #include "common/services/error.h"
 #include "reflection/maps/map_file.h"
+#include "viewer/scene/data_folder.h"
 #include "viewer/scene/values.h"
 
 #include <algorithm>
@@ -174,7 +175,7 @@ void add_surroundings_options(CLI::App& app, Surroundings& s) {
         ->group("Light");
 }
 
-void check_surroundings(const Surroundings& s) {
+void check_surroundings(const Surroundings& s, const std::filesystem::path& data) {
     if (s.environment != "sky" && (!s.sun.empty() || s.turbidity))
         throw InputError("--sun and --turbidity shape the sky; under '" + s.environment +
                          "' add a light: --light sun:AZ,EL,R,G,B");
@@ -193,7 +194,8 @@ void check_surroundings(const Surroundings& s) {
                          "' is a folder; give an image (.hdr, .exr, .png)");
     if (!std::filesystem::exists(s.environment, ignored))
         throw InputError(s.words.environment + ": there is no file '" + s.environment +
-                         "'; give an image (.hdr, .exr, .png), or sky, constant or gradient");
+                         "'; give an image (.hdr, .exr, .png), or sky, constant or gradient" +
+                         looked_for_in(s.environment, data));
 }
 
 bool is_environment_image(const Surroundings& surroundings) {

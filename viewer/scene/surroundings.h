@@ -5,6 +5,7 @@
 #include "trees/tree.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -33,8 +34,8 @@ void add_surroundings_options(CLI::App& app, Surroundings& surroundings);
 /// The part of them that shapes the light itself: --sun, --turbidity, --light, --strict.
 void add_light_options(CLI::App& app, Surroundings& surroundings);
 
-/// Throws InputError, before any work, for values that can't be.
-void check_surroundings(const Surroundings& surroundings);
+/// Throws InputError, before any work, for values that can't be. `data`: where a file was looked for (data_folder.h).
+void check_surroundings(const Surroundings& surroundings, const std::filesystem::path& data = {});
 
 /// True if the environment is read from an image, false if it is made: sky, constant, gradient.
 bool is_environment_image(const Surroundings& surroundings);

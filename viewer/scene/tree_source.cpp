@@ -28,6 +28,8 @@ CLI::Validator number_of_leaves() {
             const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
             if (error == std::errc() && end == text.data() + text.size())
                 return std::string();
+            if (error == std::errc::invalid_argument)
+                return "'" + text + "' is not a number";
             for (const ParameterDescription& p : parameter_descriptions({}))
                 if (p.name == "leaves")
                     return "'" + text + "' is out of range; it takes " + range_text(p);
@@ -39,6 +41,11 @@ CLI::Validator number_of_leaves() {
 bool is_tree_file(const std::string& name) {
     const std::string ending = lower_ending(name);
     return ending == ".glb" || ending == ".gltf" || ending == ".obj";
+}
+
+bool is_image_file(const std::string& name) {
+    constexpr const char* kEndings[] = {".hdr", ".exr", ".png", ".jpg", ".jpeg", ".tif", ".tiff", ".webp"};
+    return std::find(std::begin(kEndings), std::end(kEndings), lower_ending(name)) != std::end(kEndings);
 }
 
 } // namespace
@@ -56,9 +63,13 @@ Species asked_species(const TreeSource& source) {
         if (equals == 0 || equals == std::string::npos)
             throw InputError("--set: '" + setting + "' is not NAME=VALUE");
         const std::string_view name = std::string_view(setting).substr(0, equals);
-        set_parameter(parameters, name, std::string_view(setting).substr(equals + 1));
+        try {
+            set_parameter(parameters, name, std::string_view(setting).substr(equals + 1));
+        } catch (const InputError& error) {
+            throw InputError("--set: " + std::string(error.what()));
+        }
         if (!given.emplace(name).second)
-            throw InputError("'" + std::string(name) + "' is given twice; leave one of them out");
+            throw InputError("--set: '" + std::string(name) + "' is given twice; leave one of them out");
     }
     check_parameters(parameters);
     return species;
@@ -132,6 +143,10 @@ void check_tree_source(const TreeSource& source) {
     if (!(source.scale > 0) || !std::isfinite(source.scale))
         throw InputError("--scale: it must be above 0");
     std::error_code ignored;
+    if (is_image_file(source.name))
+        throw InputError("'" + source.name +
+                         "' is an image; give a tree (a species, or a .glb, .gltf or .obj), and images of light by "
+                         "--environment");
     if (fs::is_directory(source.name, ignored))
         throw InputError("'" + source.name + "' is a folder; give a tree's file (.glb, .gltf, .obj)");
     if (!fs::exists(source.name, ignored)) {
@@ -155,6 +170,21 @@ Tree obtain_tree(const TreeSource& source, Progress& progress, bool normal_textu
                       .z_is_up = source.up == "z",
                       .normal_textures = normal_textures},
                      progress);
+}
+
+std::optional<std::string> no_foliage_warning(const Tree& tree, const std::string& how_to_name) {
+    if (!tree.leaves.empty() || tree.branching_known)
+        return std::nullopt;
+    constexpr std::size_t kShown = 20;
+    std::string names;
+    for (std::size_t m = 0; m < std::min(tree.materials.size(), kShown); ++m) {
+        const std::string& name = tree.materials[m].name;
+        names += (names.empty() ? "" : ", ") + (name.empty() ? "one without a name" : "'" + shown_name(name) + "'");
+    }
+    if (tree.materials.size() > kShown)
+        names += " and " + std::to_string(tree.materials.size() - kShown) + " more";
+    return "no foliage was found: all is taken for bark; give " + how_to_name +
+           ", a material, mesh or node of the file; its materials are " + (names.empty() ? "none" : names);
 }
 
 } // namespace kokage

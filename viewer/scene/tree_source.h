@@ -44,4 +44,8 @@ Species asked_species(const TreeSource& source);
 /// Grows or loads it; `normal_textures`: ReadOptions'. Throws InputError, Stopped.
 Tree obtain_tree(const TreeSource& source, Progress& progress, bool normal_textures = false);
 
+/// For a stranger's file in which nothing was taken for leaves; nothing to say of bare trees that know themselves bare.
+/// `how_to_name`: by what the user says which material is foliage.
+std::optional<std::string> no_foliage_warning(const Tree& tree, const std::string& how_to_name);
+
 } // namespace kokage

@@ -101,6 +101,7 @@ TEST(Render, DrawsASceneWithLayersAndReport) {
             stages += stage["cpu_seconds"].get<double>();
         EXPECT_GT(stages, 0);
         EXPECT_LE(stages, report["cpu_seconds"].get<double>() + 0.01) << "no stage is told twice";
+        EXPECT_GE(stages, 0.95 * report["cpu_seconds"].get<double>() - 0.01) << "all is told";
         for (const char* key : {"skipped", "warnings"})
             EXPECT_TRUE(report[key].is_array()) << key;
         EXPECT_EQ(report["outputs"]["picture"], Json({"a.png", "a.exr"}));
@@ -241,6 +242,9 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
     small_scene(folder);
     write(folder / "bad.json", R"({"kokage_scene": 1, "trees": [{"species": "oak", "at": ["x", 0]}]})");
     write(folder / "broken.json", R"({"kokage_scene": 1, )");
+    write(folder / "low.json", R"({"kokage_scene": 1, "trees": [{"species": "oak", "leaves": 20}],
+        "camera": {"position": [0, -0.5, 5], "target": [0, 1, 0]}})");
+    write(folder / "light.hdr", "no picture");
     write(folder / "a.png", "former");
     const std::vector<std::pair<Words, const char*>> cases = {
         {{"bad.json"}, "bad.json: /trees/0/at/0: found \"x\" where a number from -10000 to 10000 is needed"},
@@ -262,9 +266,18 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
         {{"garden.json", "--error", "0"}, "--error: it must be above 0"},
         {{"garden.json", "--gather-rays", "-1"}, "--gather-rays"},
         {{"garden.json", "--method", "path-traced", "--gather-rays", "2"}, "--gather-rays: path-traced follows every"},
+        {{"low.json"}, "low.json: /camera/position: its height, -0.5 m, is below the ground's, 0 m"},
+        {{"oak", "--leaves", "abc"}, "--leaves: 'abc' is not a number"},
+        {{"oak", "--set", "limbs=x"}, "--set: limbs = 'x' can't be read; it takes"},
+        {{"oak", "--set", "limbs=9", "--set", "limbs=9"}, "--set: 'limbs' is given twice"},
+        {{"oak", "--environment", "none.hdr", "--data", "."},
+         "--environment: there is no file 'none.hdr'; give an image (.hdr, .exr, .png), or sky, constant or gradient; "
+         "it was looked for here, in '.' and in that folder's env"},
+        {{"light.hdr"}, "'light.hdr' is an image; give a tree"},
         {{"oak", "--leaves", "200", "--scale", "2"}, "--foliage, --leaf-size, --scale and --up are for files"},
         {{"garden.json", "--data", "nowhere"}, "there is no folder 'nowhere'"},
-        {{"garden.json", "--size", "32768x32768", "-o", "a.exr"}, "pixels"},
+        {{"garden.json", "--size", "32768x32768", "-o", "a.exr"}, "make it smaller, or ask for fewer samples"},
+        {{"garden.json", "--size", "32768x32768", "-o", "a.exr", "--samples", "1"}, "can be had: make it smaller\n"},
     };
     const Words before = folder.files();
     for (const auto& [words, complaint] : cases) {
@@ -275,6 +288,22 @@ TEST(Render, RefusesBadInputInOneLineAndWritesNothing) {
     }
     EXPECT_EQ(folder.files(), before);
     EXPECT_EQ(read_text(folder / "a.png"), "former");
+}
+
+TEST(Render, FilesThatOutgrowTheirLimitAreTakenAway) {
+    TemporaryFolder folder;
+    ProgramRunOptions limited;
+    limited.file_size = 2000;
+    for (const char* picture : {"a.exr", "a.png"}) {
+        write(folder / picture, "former");
+        const ProgramRun run = run_kokage(joined(kSmallOak, {"-o", picture, "--quiet"}), folder.path(), limited);
+        EXPECT_EQ(run.status, 2) << picture;
+        EXPECT_TRUE(is_one_complaint(run.errors));
+        EXPECT_NE(run.errors.find(picture), std::string::npos) << run.errors;
+        EXPECT_EQ(folder.files(), Words({picture}));
+        EXPECT_EQ(read_text(folder / picture), "former");
+        std::filesystem::remove(folder / picture);
+    }
 }
 
 TEST(Render, EstimatesTheMemoryOfPictures) {
@@ -328,6 +357,32 @@ TEST(Render, WarnsInTheWordsOfSceneFiles) {
     const ProgramRun broken = run_kokage({"render", "studio.json"}, folder.path());
     EXPECT_EQ(broken.status, 2);
     EXPECT_EQ(broken.errors.find("kokage: studio.json: /environment: "), 0u) << broken.errors;
+}
+
+TEST(Render, SaysThatNoFoliageWasFound) {
+    TemporaryFolder folder;
+    write(folder / "post.obj", "v 0 0 0\nv 0.1 0 0\nv 0 0 0.1\nv 0 2 0\nusemtl paint\n"
+                               "f 1 2 4\nf 2 3 4\nf 3 1 4\nf 1 3 2\n");
+    write(folder / "posts.json",
+          R"({"kokage_scene": 1, "trees": [{"file": "post.obj"}, {"file": "post.obj", "at": [1, 0]}],
+        "output": {"size": [16, 12], "samples": 1}})");
+    const ProgramRun run = run_kokage({"render", "posts.json", "--quiet", "--report", "r.json"}, folder.path());
+    ASSERT_EQ(run.status, 0) << run.errors;
+    const std::string warning =
+        "kokage: warning: posts.json: /trees/0: no foliage was found: all is taken for bark; give "
+        "'foliage': [NAME], a material, mesh or node of the file; its materials are 'paint'\n";
+    EXPECT_EQ(run.errors.rfind(warning, 0), 0u) << run.errors;
+    EXPECT_EQ(run.errors.find("no foliage", warning.size()), std::string::npos) << "once for one file: " << run.errors;
+    EXPECT_NE(Json::parse(read_text(folder / "r.json"))["warnings"].dump().find("no foliage"), std::string::npos);
+    const ProgramRun alone =
+        run_kokage({"render", "post.obj", "--quiet", "--size", "16x12", "--samples", "1"}, folder.path());
+    EXPECT_NE(alone.errors.find("post.obj: no foliage was found: all is taken for bark; give --foliage NAME"),
+              std::string::npos)
+        << alone.errors;
+    const ProgramRun bare = run_kokage(
+        {"render", "oak", "--leaves", "100", "--set", "season=winter", "--quiet", "--size", "16x12", "--samples", "1"},
+        folder.path());
+    EXPECT_EQ(bare.errors, "");
 }
 
 TEST(Render, TakesASpeciesFileAsATree) {
