@@ -18,7 +18,7 @@ RenderPlan render_plan(bool quick) {
     plan.height = 720;
     plan.every_row = plan.every_column = 15; // as many pixels as the quick plan's
     plan.truth_samples = 32768;
-    plan.fast.insert(plan.fast.end(), {{fine, 24}, {fine, 64}});
+    plan.fast.insert(plan.fast.end(), {{fine, 20}, {fine, 64}});
     plan.traced.push_back(4096);
     plan.map_samples = 1024;
     return plan;
