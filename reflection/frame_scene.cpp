@@ -1,8 +1,9 @@
 #include "reflection/picture.h"
 
+#include "common/geometry/support_points.h"
+
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace kokage {
 namespace {
@@ -97,6 +98,18 @@ Camera frame_points(const std::vector<glm::vec3>& points, const Bounds& bounds, 
     return stand_before(scaled, extent.y / size, foot, size, aspect, azimuth, field_of_view);
 }
 
+/// The corners of all triangles, each once.
+std::vector<glm::vec3> drawn_corners(const PatchScene& scene) {
+    std::vector<std::uint8_t> drawn(scene.positions.size(), 0);
+    for (const glm::uvec3& triangle : scene.triangles)
+        drawn[triangle.x] = drawn[triangle.y] = drawn[triangle.z] = 1;
+    std::vector<glm::vec3> corners;
+    for (std::size_t i = 0; i < drawn.size(); ++i)
+        if (drawn[i])
+            corners.push_back(scene.positions[i]);
+    return corners;
+}
+
 } // namespace
 
 Camera frame_scene(const Bounds& bounds, float aspect, float azimuth, float field_of_view) {
@@ -109,21 +122,16 @@ Camera frame_scene(const Bounds& bounds, float aspect, float azimuth, float fiel
 
 Camera frame_scene(const PatchScene& scene, float aspect, float azimuth, float field_of_view) {
     // The farthest corners in many directions stand for all: what is between them is inside their hull.
-    const Bounds bounds = bounds_of(scene);
-    std::vector<glm::vec3> support;
-    for (int k = 0; k < kSupportDirections && !scene.triangles.empty(); ++k) {
+    std::vector<glm::vec3> directions, support;
+    for (int k = 0; k < kSupportDirections; ++k) {
         const float y = 1 - 2 * (float(k) + 0.5f) / kSupportDirections, ring = std::sqrt(1 - y * y),
                     turn = 2.39996323f * float(k);
-        const glm::vec3 direction(ring * std::cos(turn), y, ring * std::sin(turn));
-        float farthest = -std::numeric_limits<float>::infinity();
-        support.emplace_back(bounds.low);
-        for (const glm::uvec3& triangle : scene.triangles)
-            for (std::size_t c = 0; c < 3; ++c)
-                if (const glm::vec3& p = scene.positions[triangle[c]]; glm::dot(p - bounds.low, direction) > farthest) {
-                    farthest = glm::dot(p - bounds.low, direction);
-                    support.back() = p;
-                }
+        directions.emplace_back(ring * std::cos(turn), y, ring * std::sin(turn));
     }
+    const std::vector<glm::vec3> corners = drawn_corners(scene);
+    for (const std::uint32_t corner : support_points(corners, directions))
+        support.push_back(corners[corner]);
+    const Bounds bounds = bounds_of(scene);
     return frame_points(support, bounds, aspect, double(azimuth), double(field_of_view));
 }
 
