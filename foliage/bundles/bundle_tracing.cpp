@@ -134,7 +134,7 @@ OpenFractions make_open(std::size_t directions, const Facets& facets, bool both)
 } // namespace
 
 float pixel_density(const Facets& facets, float pixels) {
-    const double extent = glm::length(facets.high - facets.low);
+    const double extent = glm::length(facets.drawn.high - facets.drawn.low);
     // The mean projected area of a leaf is half its area.
     const double wanted = std::sqrt(pixels / std::max(0.5 * facets.mean_leaf_area, 1e-30));
     return float(std::clamp(wanted, 1.0, std::max(8192.0 / std::max(extent, 1e-6), 1.0)));

@@ -15,20 +15,20 @@ void DrawnBundles::draw(const BundleEffort& effort, const std::vector<std::uint3
     Stopwatch watch;
     BundleTransport drawn = trace_bundles(scene_, facets_, effort.lines, progress);
     report.stages.push_back({"line bundles", watch.cpu(), watch.wall()});
-    if (!too_small.empty()) {
+    if (!too_small.empty() || !facets_.wide_patches.empty()) {
         watch.restart();
         if (!rays_)
             rays_ = std::make_unique<Rays>(scene_);
         add_ray_links(rays_->queries, rays_->points, facets_, too_small, rays_a_side(effort.lines), effort.lines.seed,
                       transport_, drawn, progress);
-        report.stages.push_back({"rays from small leaves", watch.cpu(), watch.wall()});
+        report.stages.push_back({"rays", watch.cpu(), watch.wall()});
     }
     lights_.set_ray_lights(nullptr); // they refer to the rays that now go
     ray_lights_.reset();
     effort_ = effort;
     transport_ = std::move(drawn);
     if (!transport_.rays.empty())
-        ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays.patches);
+        ray_lights_ = std::make_unique<RayLights>(rays_->queries, rays_->points, transport_.rays);
     lights_.set_ray_lights(ray_lights_.get());
     lights_.clear();
 }
@@ -38,9 +38,14 @@ void DrawnBundles::count(WorkReport& report) const {
     count("line directions", transport_.sky_lines.directions.size() + transport_.link_lines.directions.size());
     count("fragments", transport_.fragments);
     count("links", transport_.links.neighbours.size());
-    if (!transport_.rays.empty()) {
-        count("leaves too small for lines", transport_.rays.patches.size());
-        count("rays from small leaves", transport_.rays.rays());
+    const RayLinks& rays = transport_.rays;
+    if (rays.small_count > 0) {
+        count("leaves too small for lines", rays.small_count);
+        count("rays from small leaves", rays.rays_of_small());
+    }
+    if (rays.patches.size() > rays.small_count) {
+        count("surfaces too wide for lines", rays.patches.size() - rays.small_count);
+        count("rays from wide surfaces", rays.rays_of_wide());
     }
 }
 

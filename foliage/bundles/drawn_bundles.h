@@ -15,8 +15,8 @@ class DrawnBundles {
     DrawnBundles(const DrawnBundles&) = delete; // lights refer to the rest
     DrawnBundles& operator=(const DrawnBundles&) = delete;
 
-    /// Draws the lines, anew if there are some. Leaves `too_small` (leaves_too_small_for_lines()) get rays. Lights are
-    /// forgotten. Stages go to `report`. Throws Stopped; the lines that were there then serve on.
+    /// Draws the lines, anew if there are some. Leaves `too_small` (leaves_too_small_for_lines()) and wide patches get
+    /// rays. Lights are forgotten. Stages go to `report`. Throws Stopped; the lines that were there then serve on.
     void draw(const BundleEffort& effort, const std::vector<std::uint32_t>& too_small, Progress& progress,
               WorkReport& report);
     /// DrawnLights::light() with the effort of the last draw().
@@ -33,7 +33,7 @@ class DrawnBundles {
     std::size_t bytes() const;
 
   private:
-    struct Rays { ///< for leaves that are too small for lines
+    struct Rays { ///< for patches that are too small or too wide for lines
         explicit Rays(const PatchScene& scene) : queries(scene), points(scene) {}
         RayQueries queries;
         PatchPoints points;

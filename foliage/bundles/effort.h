@@ -46,7 +46,8 @@ struct LightPlan {
     double merged_share = 0; ///< of all irradiance
 };
 
-/// Shares samples among lights by irradiance (which makes the summed variance least); lights that together give less
+/// Shares samples among lights by irradiance (which makes the summed variance least), those of a narrow light among few
+/// beams of many pixels, those of a wide one among many beams; lights that together give less
 /// than `negligible` of all light are merged into their nearest neighbours.
 LightPlan plan_lights(const Environment& environment, const BundleEffort& effort, double negligible);
 

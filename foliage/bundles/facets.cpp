@@ -94,14 +94,42 @@ bool try_merge(Outline& outline, const Corner (&triangle)[3], std::int16_t mask,
     return false;
 }
 
+/// Bounds of polygons, column by column of the scene: every polygon widens the box of the column that its first corner
+/// stands in.
+class BoxColumns {
+  public:
+    explicit BoxColumns(const Facets& facets)
+        : low_(facets.low), columns_a_unit_(float(kColumns) / glm::max(facets.high - facets.low, 1e-20f)) {
+        constexpr float far = std::numeric_limits<float>::max();
+        columns_.fill({glm::vec3(far), glm::vec3(-far)});
+    }
+    void add(const glm::vec3& first_corner, const glm::vec3& corner) {
+        const glm::vec3 along = (first_corner - low_) * columns_a_unit_;
+        const auto column = [](float place) { return std::size_t(std::clamp(place, 0.f, float(kColumns - 1))); };
+        Box& box = columns_[column(along.z) * kColumns + column(along.x)];
+        box.low = glm::min(box.low, corner);
+        box.high = glm::max(box.high, corner);
+    }
+    /// Of columns with polygons.
+    std::vector<Box> boxes() const {
+        std::vector<Box> boxes;
+        for (const Box& column : columns_)
+            if (column.low.x <= column.high.x)
+                boxes.push_back(column);
+        return boxes;
+    }
+
+  private:
+    static constexpr int kColumns = 16; ///< in x and in z
+    glm::vec3 low_, columns_a_unit_;
+    std::array<Box, std::size_t(kColumns) * kColumns> columns_;
+};
+
 class Builder {
   public:
     Builder(const PatchScene& scene, Facets& facets)
         : scene_(scene), solid_shares_(solid_shares(scene)), facets_(facets), centre_(facets.centre),
-          scale_(float(facets.scale)) {
-        constexpr float far = std::numeric_limits<float>::max();
-        columns_.fill({glm::vec3(far), glm::vec3(-far)});
-    }
+          scale_(float(facets.scale)), columns_(facets) {}
 
     void add_patch(std::uint32_t index) {
         facets_.patch_first_facet.push_back(std::uint32_t(facets_.facets.size()));
@@ -142,11 +170,7 @@ class Builder {
         flush(outline, index, bark);
     }
 
-    void store_boxes() {
-        for (const Box& column : columns_)
-            if (column.low.x <= column.high.x)
-                facets_.boxes.push_back(column);
-    }
+    void store_boxes() { facets_.boxes = columns_.boxes(); }
 
     void store_groups() {
         for (auto& of_corners : groups_)
@@ -166,23 +190,12 @@ class Builder {
             return;
         const std::uint32_t facet = facet_for(outline, patch, bark);
         add_area(facets_.facets[facet], outline);
-        add_to_box(outline);
+        for (int k = 0; k < outline.count; ++k)
+            columns_.add(outline.corners[0], outline.corners[k]);
         add_polygon(outline,
                     bark ? (facets_.leaf_facet_count + 2 * (facet - facets_.leaf_facet_count)) | PolygonGroup::kBark
                          : facet);
         outline.count = 0;
-    }
-
-    /// Every polygon widens the box of the column that its first corner stands in.
-    void add_to_box(const Outline& outline) {
-        const glm::vec3 along =
-            (outline.corners[0] - facets_.low) * (float(kColumns) / glm::max(facets_.high - facets_.low, 1e-20f));
-        const auto column = [](float place) { return std::size_t(std::clamp(place, 0.f, float(kColumns - 1))); };
-        Box& box = columns_[column(along.z) * kColumns + column(along.x)];
-        for (int k = 0; k < outline.count; ++k) {
-            box.low = glm::min(box.low, outline.corners[k]);
-            box.high = glm::max(box.high, outline.corners[k]);
-        }
     }
 
     void add_polygon(const Outline& outline, std::uint32_t face) {
@@ -279,8 +292,7 @@ class Builder {
     const glm::vec3 centre_; ///< a float itself, so that differences from it are as exact as the positions are
     const float scale_;
     std::size_t first_facet_ = 0;
-    static constexpr int kColumns = 16; ///< in x and in z
-    std::array<Box, std::size_t(kColumns) * kColumns> columns_;
+    BoxColumns columns_;
     static constexpr int kFewestCorners = 3;
     /// By corners, without and with masks.
     std::array<std::array<PolygonGroup, 2>, PolygonGroup::kMaxCorners - kFewestCorners + 1> groups_;
@@ -308,6 +320,42 @@ void measure(const PatchScene& scene, Facets& facets) {
         }
     }
     facets.mean_leaf_area = leaves ? float(leaf_area / double(leaves)) : any ? float(any_area / double(any)) : 0.f;
+}
+
+/// See Facets::wide_patches.
+void set_wide_patches_apart(const PatchScene& scene, Facets& facets) {
+    constexpr float kWide = 256; // times as large as a leaf
+    facets.drawn = {facets.low, facets.high};
+    if (scene.ground || scene.leaf_count == 0)
+        return;
+    double wide_area = 0, other_area = 0;
+    for (std::uint32_t p = 0; p < facets.patch_count; ++p) {
+        const float area = facets.patch_area[p];
+        const bool wide = scene.patches[p].kind == PatchKind::bark && area > kWide * facets.mean_leaf_area;
+        (wide ? wide_area : other_area) += double(area);
+        if (wide)
+            facets.wide_patches.push_back(p);
+    }
+    if (wide_area <= other_area) {
+        facets.wide_patches.clear();
+        return;
+    }
+    std::vector<std::uint8_t> wide(facets.patch_count, 0);
+    for (const std::uint32_t p : facets.wide_patches)
+        wide[p] = 1;
+    BoxColumns columns(facets);
+    for (const PolygonGroup& group : facets.groups)
+        for (std::size_t i = 0; i < group.count; ++i)
+            if (!wide[facets.facets[facets.facet_of(group.face[i] & ~PolygonGroup::kBark)].patch])
+                for (std::size_t k = 0; k < std::size_t(group.corners); ++k)
+                    columns.add({group.x[0][i], group.y[0][i], group.z[0][i]},
+                                {group.x[k][i], group.y[k][i], group.z[k][i]});
+    facets.boxes = columns.boxes();
+    facets.drawn = facets.boxes.empty() ? Box{} : facets.boxes.front();
+    for (const Box& box : facets.boxes) {
+        facets.drawn.low = glm::min(facets.drawn.low, box.low);
+        facets.drawn.high = glm::max(facets.drawn.high, box.high);
+    }
 }
 
 MaskBits pack(const std::vector<AlphaMask>& masks) {
@@ -365,7 +413,7 @@ std::size_t PolygonGroup::bytes() const {
 
 std::size_t Facets::bytes() const {
     std::size_t sum = mask_bits.bytes() + size_in_bytes(facets) + size_in_bytes(patch_first_facet) +
-                      size_in_bytes(patch_area) + size_in_bytes(boxes);
+                      size_in_bytes(patch_area) + size_in_bytes(wide_patches) + size_in_bytes(boxes);
     for (const PolygonGroup& group : groups)
         sum += group.bytes();
     return sum;
@@ -398,6 +446,7 @@ Facets make_facets(const PatchScene& scene) {
     builder.store_boxes();
     facets.patch_first_facet.push_back(std::uint32_t(facets.facets.size()));
     measure(scene, facets);
+    set_wide_patches_apart(scene, facets);
     return facets;
 }
 

@@ -82,12 +82,20 @@ struct Facets {
     std::uint32_t patch_count = 0;
     float mean_leaf_area = 0;      ///< of leaf patches with an area (of all patches if there is no leaf)
     glm::vec3 low{0.f}, high{0.f}; ///< bounds, scaled
-    std::vector<Box> boxes;        ///< closer bounds: together they hold all polygons; scaled
+    /// Patches of wood or of things so wide beside the leaves that lines dense enough for these would mostly be drawn
+    /// on them (a floor, a photographer's backdrop). They get rays (ray_links.h), and no more of them is drawn than
+    /// lines through the rest pass. Ascending; none where there is a ground, which wide things shade far around.
+    std::vector<std::uint32_t> wide_patches;
+    std::vector<Box> boxes; ///< closer bounds: together they hold all polygons but those of wide patches; scaled
+    Box drawn;              ///< bounds of what `boxes` hold; the scene's where no patch is wide
 
     /// What a line meets is a face: leaf facet f is face f; bark facet b (counted from leaf_facet_count) has two,
     /// leaf_facet_count + 2b where its front looks to the near end of the line, + 1 where it looks to the far end.
     std::uint32_t face_count() const {
         return leaf_facet_count + 2 * (std::uint32_t(facets.size()) - leaf_facet_count);
+    }
+    std::uint32_t facet_of(std::uint32_t face) const {
+        return face < leaf_facet_count ? face : leaf_facet_count + (face - leaf_facet_count) / 2;
     }
     std::size_t bytes() const;
 };

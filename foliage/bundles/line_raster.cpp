@@ -51,7 +51,8 @@ MaskTest MakeMaskTest(const PatchScene& scene, const PolygonGroup& group, std::s
 template <class MakeRoom>
 void DrawLone(const LonePolygon& polygon, const MaskTest* test, const Projection& projection, std::uint32_t face_mask,
               FragmentBuffer& buffer, std::uint32_t* fragments, MakeRoom&& make_room) {
-    for (int y = polygon.first_row; y < polygon.first_row + polygon.rows; ++y) {
+    const int end_row = std::min(polygon.first_row + polygon.rows, projection.height);
+    for (int y = std::max(polygon.first_row, 0); y < end_row; ++y) {
         const auto [begin, end] = polygon.span(y, projection.width);
         const std::uint32_t line = std::uint32_t(y) * std::uint32_t(projection.width);
         const std::size_t before = buffer.count;
@@ -83,6 +84,18 @@ void DrawGroup(const PatchScene& scene, const MaskBits& bits, const PolygonGroup
                             hn::Gt(batch.columns, hn::Set(d, float(most_columns))));
         if (group.masked)
             alone = hn::Or(alone, hn::Gt(hn::LoadU(d, &group.texels.wraps[first]), hn::Zero(d)));
+        if (projection.clips) {
+            const auto zero = hn::Zero(d), width = hn::Set(d, float(projection.width)),
+                       height = hn::Set(d, float(projection.height)),
+                       end_column = hn::Add(batch.first_column, batch.columns),
+                       end_row = hn::Add(batch.first_row, batch.rows);
+            const auto meets = hn::And(hn::And(hn::Gt(end_column, zero), hn::Lt(batch.first_column, width)),
+                                       hn::And(hn::Gt(end_row, zero), hn::Lt(batch.first_row, height)));
+            const auto inside = hn::And(hn::And(hn::Ge(batch.first_column, zero), hn::Le(end_column, width)),
+                                        hn::And(hn::Ge(batch.first_row, zero), hn::Le(end_row, height)));
+            batch.alive = hn::And(batch.alive, meets);
+            alone = hn::Or(alone, hn::Not(inside));
+        }
         alone = hn::And(alone, batch.alive);
         const auto together = hn::AndNot(alone, batch.alive);
         if (group.masked)
@@ -263,6 +276,7 @@ Projection fit_projection(const Facets& facets, const glm::vec3& direction, floa
     const float margin = 2 + 1e-2f * (w.y - w.x);
     projection.depth_low = w.x - margin;
     projection.depth_high = w.y + margin;
+    projection.clips = !facets.wide_patches.empty();
     return projection;
 }
 

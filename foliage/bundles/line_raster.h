@@ -24,9 +24,11 @@ struct Projection {
     glm::vec2 offset{0.f};               ///< in pixels; jitters the grid and moves everything to positive coordinates
     int width = 0, height = 0;           ///< the width is a multiple of FragmentLists::kGroup
     float depth_low = 0, depth_high = 1; ///< in pixels along the direction
+    bool clips = false;                  ///< polygons may reach out of the picture, or lie outside
 };
 
-/// Fits a projection along a unit direction around a scene; `jitter` in [0,1)^2 moves the grid.
+/// Fits a projection along a unit direction around a scene (around all but its wide patches); `jitter` in [0,1)^2 moves
+/// the grid.
 Projection fit_projection(const Facets& facets, const glm::vec3& direction, float pixels_per_unit, glm::vec2 jitter);
 
 /// How many low bits of a key hold the face. Face counts above 2^20 leave fewer depth levels than the 4096 that are

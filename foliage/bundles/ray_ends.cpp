@@ -2,6 +2,8 @@
 
 #include "common/services/parallel.h"
 
+#include <algorithm>
+
 namespace kokage::bundles {
 namespace {
 
@@ -22,12 +24,12 @@ void gather_ray_ends(const BundleTransport& transport, const Image& remainder, c
         radiance.resize(radiance.size() + transport.ground->texels() + 1, ground_radiance);
         down.resize(radiance.size(), 1);
     }
-    const float share = 1 / float(rays.rays_a_row);
     parallel_blocks(rays.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t row = 4 * from; row < 4 * to; ++row) {
             const Side side = 2 * rays.patches[row / 4] + Side(row / 2 % 2);
             glm::vec3 light(0.f);
             int down_ends = 0;
+            const float share = 1 / float(std::max(rays.rays_of(row), 1u));
             for (std::uint16_t end : rays.ends_of(row)) {
                 light += radiance[end];
                 down_ends += down[end];
@@ -68,7 +70,7 @@ void sum_ray_open_directions(const RayLinks& rays, const Facets& facets, std::sp
         for (std::uint32_t e = rays.end_begin[4 * i]; e < rays.end_begin[4 * i + 4]; ++e)
             if (rays.ends[e] < rays.sky_cells.size())
                 sum += rays.sky_cells.directions[rays.ends[e]];
-        sums[rays.patches[i]] = facets.patch_area[rays.patches[i]] / float(rays.rays_a_row) * sum;
+        sums[rays.patches[i]] = facets.patch_area[rays.patches[i]] / float(rays.rays_of(4 * i)) * sum;
     }
 }
 

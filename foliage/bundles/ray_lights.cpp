@@ -9,8 +9,8 @@
 
 namespace kokage::bundles {
 
-RayLights::RayLights(const RayQueries& queries, const PatchPoints& points, const std::vector<std::uint32_t>& patches)
-    : queries_(queries), points_(points), patches_(patches) {}
+RayLights::RayLights(const RayQueries& queries, const PatchPoints& points, const RayLinks& links)
+    : queries_(queries), points_(points), links_(links) {}
 
 RayLights::Transfer RayLights::trace(const DistantLight& light, int rays_a_half, std::uint64_t seed,
                                      Progress& progress) const {
@@ -18,31 +18,36 @@ RayLights::Transfer RayLights::trace(const DistantLight& light, int rays_a_half,
     transfer.shape = shape_key(light);
     transfer.irradiance = light.irradiance;
     transfer.rays_a_half = rays_a_half;
-    transfer.received.assign(4 * patches_.size(), glm::vec3(0.f));
-    parallel_blocks(patches_.size(), 64, [&](std::size_t from, std::size_t to) {
+    transfer.received.assign(4 * links_.patches.size(), glm::vec3(0.f));
+    parallel_blocks(links_.patches.size(), 64, [&](std::size_t from, std::size_t to) {
         progress.throw_if_stopped();
-        for (std::size_t i = from; i < to; ++i)
+        for (std::size_t i = from; i < to; ++i) {
+            const bool wide = links_.wide(i);
+            const int rays = wide ? int(RayLinks::kRaysOfWide) * rays_a_half : rays_a_half;
             for (std::uint64_t h = 0; h < 2; ++h)
-                for (int r = 0; r < rays_a_half; ++r) {
-                    PathNumbers numbers(hash64(seed ^ hash64(2 * std::uint64_t(patches_[i]) + h)), std::uint32_t(r));
+                for (int r = 0; r < rays; ++r) {
+                    PathNumbers numbers(hash64(seed ^ hash64(2 * std::uint64_t(links_.patches[i]) + h)),
+                                        std::uint32_t(r));
                     PatchPoint point;
-                    if (!points_.sample(patches_[i], numbers, point))
+                    if (!points_.sample(links_.patches[i], numbers, point))
                         continue;
                     const glm::vec2 pair = numbers.pair();
                     const LightSample sample = sample_light(light, pair.x, pair.y);
                     const float cosine = glm::dot(sample.direction, point.normal);
-                    if (cosine == 0 || queries_.occluded(point.position, sample.direction, queries_.ray_offset(),
-                                                         std::numeric_limits<float>::infinity()))
+                    if (cosine == 0 || (wide && cosine < 0) ||
+                        queries_.occluded(point.position, sample.direction, queries_.ray_offset(),
+                                          std::numeric_limits<float>::infinity()))
                         continue;
                     const std::size_t row = 4 * i + (cosine < 0 ? 2 : 0) + h;
-                    transfer.received[row] += std::abs(cosine) / float(rays_a_half) * sample.irradiance_over_pdf;
+                    transfer.received[row] += std::abs(cosine) / float(rays) * sample.irradiance_over_pdf;
                 }
+        }
     });
     return transfer;
 }
 
 void RayLights::begin() {
-    sum_.assign(4 * patches_.size(), glm::vec3(0.f));
+    sum_.assign(4 * links_.patches.size(), glm::vec3(0.f));
     rays_ = 0;
     for (Transfer& transfer : kept_)
         transfer.used = false;
@@ -59,7 +64,7 @@ void RayLights::add(const DistantLight& light, const glm::vec3& scale, int rays,
         found = kept_.insert(kept_.end(), Transfer{});
     if (2 * half > 3 * found->rays_a_half) {
         *found = trace(light, half, seed, progress);
-        rays_ += 2 * std::uint64_t(half) * patches_.size();
+        rays_ += 2 * std::uint64_t(half) * links_.small_count;
     }
     found->used = true;
     glm::vec3 factor(0.f);
@@ -71,7 +76,7 @@ void RayLights::add(const DistantLight& light, const glm::vec3& scale, int rays,
 
 void RayLights::finish(std::vector<Rgb> (&halves)[2]) {
     for (std::size_t row = 0; row < sum_.size(); ++row)
-        halves[row % 2][2 * patches_[row / 4] + row / 2 % 2] = Rgb::from(sum_[row]);
+        halves[row % 2][2 * links_.patches[row / 4] + row / 2 % 2] = Rgb::from(sum_[row]);
     std::erase_if(kept_, [](const Transfer& transfer) { return !transfer.used; });
 }
 

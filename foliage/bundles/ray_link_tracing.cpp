@@ -4,6 +4,7 @@
 #include "foliage/cosine_direction.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -21,23 +22,33 @@ struct Met {
     std::vector<Side> sides;
 };
 
+/// Of a patch's four rows, as in RayLinks.
+using RowLengths = std::array<std::uint32_t, 4>;
+
+/// What the rays of one patch saw: four rows, each with room for so many rays.
+struct SeenRows {
+    std::uint32_t* codes;
+    std::size_t room;
+    std::uint32_t* row(std::size_t k) const { return codes + k * room; }
+};
+
 class RayTracing {
   public:
     RayTracing(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
                const std::optional<GroundGrid>& ground, const RayLinks& rays, std::uint64_t seed)
         : queries_(queries), points_(points), facets_(facets), ground_(ground), rays_(rays), seed_(seed) {}
 
-    /// Fills the four rows of a patch from ray `first` on with sides, or kEnd + entry. False if no solid point was
-    /// found.
-    bool look_around(std::uint32_t patch, std::uint32_t first, std::span<std::uint32_t> seen) const {
+    /// Fills the four rows of a patch, of rays[row] rays, from ray `first` on with sides, or kEnd + entry. False if no
+    /// solid point was found.
+    bool look_around(std::uint32_t patch, const RowLengths& rays, std::uint32_t first, SeenRows seen) const {
         for (std::uint32_t row = 0; row < 4; ++row)
-            for (std::uint32_t i = first; i < rays_.rays_a_row; ++i) {
+            for (std::uint32_t i = first; i < rays[row]; ++i) {
                 PathNumbers numbers(hash64(seed_ ^ hash64(4 * std::uint64_t(patch) + row)), i);
                 PatchPoint point;
                 if (!points_.sample(patch, numbers, point))
                     return false;
                 const glm::vec3 direction = cosine_direction(row < 2 ? point.normal : -point.normal, numbers.pair());
-                seen[row * rays_.rays_a_row + i] = look(point.position, direction);
+                seen.row(row)[i] = look(point.position, direction);
             }
         return true;
     }
@@ -86,29 +97,30 @@ std::uint32_t end_now(std::uint16_t end, const BundleTransport& earlier, const s
 
 /// Copies what earlier rays of a patch saw to the start of its rows; returns their number, 0 if there are none.
 std::uint32_t recall(std::uint32_t patch, const BundleTransport& earlier, const std::optional<GroundGrid>& ground,
-                     std::uint32_t rays_a_row, std::span<std::uint32_t> seen) {
+                     const RowLengths& lengths, SeenRows seen) {
     const RayLinks& rays = earlier.rays;
     const auto found = std::lower_bound(rays.patches.begin(), rays.patches.end(), patch);
-    if (found == rays.patches.end() || *found != patch || rays.rays_a_row > rays_a_row)
+    const std::size_t first = 4 * std::size_t(found - rays.patches.begin());
+    if (found == rays.patches.end() || *found != patch || rays.rays_of(first) > lengths[0])
         return 0;
     for (std::uint32_t row = 0; row < 4; ++row) {
         const Side side = 2 * patch + row / 2;
-        const std::span<const std::uint16_t> ends = rays.ends_of(4 * std::size_t(found - rays.patches.begin()) + row);
-        const std::size_t met = rays.rays_a_row - ends.size();
+        const std::span<const std::uint16_t> ends = rays.ends_of(first + row);
+        const std::size_t met = rays.rays_of(first + row) - ends.size();
         const std::span<const Side> lines = earlier.links.row(side);
         const auto from =
             row % 2 == 0 ? lines.begin() : lines.begin() + std::ptrdiff_t(earlier.links.half_row(side, 0).size());
-        const auto to = std::copy_n(from, met, seen.begin() + std::ptrdiff_t(row) * rays_a_row);
+        const auto to = std::copy_n(from, met, seen.row(row));
         std::transform(ends.begin(), ends.end(), to, [&](std::uint16_t end) { return end_now(end, earlier, ground); });
     }
-    return rays.rays_a_row;
+    return rays.rays_of(first);
 }
 
 /// Sorts what the rays of one patch saw into rows of sides and rows of ends.
-void append(std::uint32_t patch, std::span<const std::uint32_t> seen, RayLinks& rays, Met& met) {
+void append(std::uint32_t patch, const RowLengths& lengths, SeenRows seen, RayLinks& rays, Met& met) {
     rays.patches.push_back(patch);
     for (std::uint32_t row = 0; row < 4; ++row) {
-        for (std::uint32_t code : seen.subspan(row * std::size_t(rays.rays_a_row), rays.rays_a_row))
+        for (std::uint32_t code : std::span(seen.row(row), lengths[row]))
             if (code & kEnd)
                 rays.ends.push_back(std::uint16_t(code & ~kEnd));
             else
@@ -190,10 +202,12 @@ std::uint32_t rays_a_side(const BundleSettings& settings) {
 }
 
 void add_ray_links(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
-                   const std::vector<std::uint32_t>& patches, std::uint32_t rays_a_side, std::uint64_t seed,
+                   const std::vector<std::uint32_t>& small, std::uint32_t rays_a_side, std::uint64_t seed,
                    const BundleTransport& earlier, BundleTransport& transport, Progress& progress) {
     RayLinks& rays = transport.rays;
     rays = {};
+    std::vector<std::uint32_t> patches = small; // leaves come before all others
+    patches.insert(patches.end(), facets.wide_patches.begin(), facets.wide_patches.end());
     if (patches.empty())
         return;
     rays.rays_a_row = std::max(1u, rays_a_side / 2);
@@ -201,28 +215,34 @@ void add_ray_links(const RayQueries& queries, const PatchPoints& points, const F
     rays.end_begin.push_back(0);
     const RayTracing tracing(queries, points, facets, transport.ground, rays, seed);
     Met met;
-    const std::size_t rays_a_patch = 4 * std::size_t(rays.rays_a_row);
     std::vector<std::uint32_t> seen;
     std::vector<std::uint8_t> solid;
-    progress.begin("tracing rays from small leaves", patches.size());
-    for (std::size_t first = 0; first < patches.size(); first += kPatchesAtOnce) {
-        const std::size_t count = std::min(kPatchesAtOnce, patches.size() - first);
-        seen.resize(count * rays_a_patch);
+    progress.begin("tracing rays", patches.size());
+    /// Of patches [first, last), which are all small or all wide.
+    const auto trace = [&](std::size_t first, std::size_t last, const RowLengths& lengths) {
+        const std::size_t count = last - first, room = lengths[0];
+        seen.resize(4 * count * room);
         solid.resize(count);
+        const auto rows_of = [&](std::size_t i) { return SeenRows{seen.data() + 4 * i * room, room}; };
         parallel_blocks(count, kPatchBlock, [&](std::size_t from, std::size_t to) {
             progress.throw_if_stopped();
             for (std::size_t i = from; i < to; ++i) {
                 const std::uint32_t patch = patches[first + i];
-                const std::span<std::uint32_t> rows = std::span(seen).subspan(i * rays_a_patch, rays_a_patch);
-                solid[i] =
-                    tracing.look_around(patch, recall(patch, earlier, transport.ground, rays.rays_a_row, rows), rows);
+                const std::uint32_t known = recall(patch, earlier, transport.ground, lengths, rows_of(i));
+                solid[i] = tracing.look_around(patch, lengths, known, rows_of(i));
             }
             progress.advance(to - from);
         });
         for (std::size_t i = 0; i < count; ++i)
             if (solid[i])
-                append(patches[first + i], std::span(seen).subspan(i * rays_a_patch, rays_a_patch), rays, met);
-    }
+                append(patches[first + i], lengths, rows_of(i), rays, met);
+    };
+    const std::uint32_t of_small = rays.rays_a_row, of_wide = RayLinks::kRaysOfWide * of_small;
+    for (std::size_t first = 0; first < small.size(); first += kPatchesAtOnce)
+        trace(first, std::min(first + kPatchesAtOnce, small.size()), {of_small, of_small, of_small, of_small});
+    rays.small_count = rays.patches.size();
+    for (std::size_t first = small.size(); first < patches.size(); first += kPatchesAtOnce)
+        trace(first, std::min(first + kPatchesAtOnce, patches.size()), {of_wide, of_wide, 0, 0});
     replace_rows(rays, met, transport.links);
 }
 

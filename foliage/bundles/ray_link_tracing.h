@@ -1,5 +1,5 @@
 #pragma once
-// Traces the rays of leaves that are too small for line bundles (see ray_links.h).
+// Traces the rays of patches that are too small or too wide for line bundles (see ray_links.h).
 #include "common/trace/ray_queries.h"
 #include "foliage/bundles/bundle_tracing.h"
 #include "foliage/patch_points.h"
@@ -12,15 +12,15 @@ namespace kokage::bundles {
 std::vector<std::uint32_t> leaves_too_small_for_lines(const PatchScene& scene, const Facets& facets,
                                                       const BundleSettings& settings);
 
-/// Rays of a side, both halves together, that go with bundles of these settings; a multiple of 2.
+/// Rays of a small leaf's side, both halves together, that go with bundles of these settings; a multiple of 2.
 std::uint32_t rays_a_side(const BundleSettings& settings);
 
-/// Traces `patches` (ascending) and puts what they meet into their rows of transport.links; sets transport.rays.
-/// Patches without solid area keep what lines found. The result does not depend on the number of threads.
-/// `earlier`: a transport of the same scene and seed with fewer rays, which are then not traced again (empty: none);
-/// the result is the same.
+/// Traces the leaves `small` (ascending) and facets.wide_patches, and puts what they meet into their rows of
+/// transport.links; sets transport.rays. Patches without solid area keep what lines found. The result does not depend
+/// on the number of threads. `earlier`: a transport of the same scene and seed with fewer rays, which are then not
+/// traced again (empty: none); the result is the same.
 void add_ray_links(const RayQueries& queries, const PatchPoints& points, const Facets& facets,
-                   const std::vector<std::uint32_t>& patches, std::uint32_t rays_a_side, std::uint64_t seed,
+                   const std::vector<std::uint32_t>& small, std::uint32_t rays_a_side, std::uint64_t seed,
                    const BundleTransport& earlier, BundleTransport& transport, Progress& progress);
 
 } // namespace kokage::bundles

@@ -222,6 +222,23 @@ TEST(BundlesLineRaster, BarkHasAFaceForEachEndOfTheLine) {
         expect_same_as_twin(leaves_and_bark(), direction, 70);
 }
 
+/// Only the part of it that lines through the rest pass.
+TEST(BundlesLineRaster, AWideFloorIsCutOff) {
+    PatchScene scene = leaves_and_bark();
+    test::add_rectangle(scene, {-20, -1, -20}, {0, 0, 40}, {40, 0, 0});
+    test::add_rectangle(scene, {-20, -1, 2}, {0, 4, 0}, {40, 0, 0});
+    for (std::size_t p = scene.patches.size() - 2; p < scene.patches.size(); ++p)
+        scene.patches[p].kind = PatchKind::bark;
+    scene.leaf_count -= 2;
+    const Facets facets = make_facets(scene);
+    ASSERT_EQ(facets.wide_patches.size(), 2u);
+    const Projection projection = fit_projection(facets, {0, -1, 0}, 1000, {0, 0});
+    ASSERT_TRUE(projection.clips);
+    EXPECT_LT(std::max(projection.width, projection.height), 250); // of more than 1000
+    for (const glm::vec3& direction : kDirections)
+        expect_same_as_twin(scene, direction, 1000);
+}
+
 TEST(BundlesLineRaster, HolesOfCardsLetLinesThrough) {
     PatchScene scene = test::random_crown(40, 3, test::realistic_leaf());
     test::mask_rectangles(scene, test::checkered_mask(4));
