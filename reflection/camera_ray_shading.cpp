@@ -23,6 +23,14 @@ UnlitHit CameraRayShading::unlit(const glm::vec3& origin, const CameraHit& hit, 
     return unlit;
 }
 
+std::uint32_t CameraRayShading::part_met(const glm::vec3& origin, const CameraHit& hit) const {
+    const float ground_distance = ground.distance(origin, hit.direction);
+    if (hit.shows_surface(ground.distance_to_surfaces(ground_distance, hit.direction)))
+        return seen_part::of_patch(queries.scene().triangle_patch[hit.hit.triangle],
+                                   hit.is_relief || glm::dot(hit.direction, hit.hit.geometric_normal) < 0);
+    return ground_distance < std::numeric_limits<float>::infinity() ? seen_part::kGround : seen_part::kSurroundings;
+}
+
 SeenByRay CameraRayShading::lit(const UnlitHit& unlit, const glm::vec3& direction, const LightFromLights& light,
                                 ShadingScratch& scratch) const {
     if (unlit.kind == UnlitHit::Kind::surroundings)

@@ -35,6 +35,8 @@ struct CameraRayShading {
     /// Adds rays to lights to `rays`, for `receiver`.
     UnlitHit unlit(const glm::vec3& origin, const CameraHit& hit, SampleIndex sample, std::uint32_t receiver,
                    LightRays& rays, ShadingScratch& scratch) const;
+    /// Its part (seen_part) alone.
+    std::uint32_t part_met(const glm::vec3& origin, const CameraHit& hit) const;
     /// `light`: what arrived for the hit's receiver. `direction`: of the camera ray.
     SeenByRay lit(const UnlitHit& unlit, const glm::vec3& direction, const LightFromLights& light,
                   ShadingScratch& scratch) const;

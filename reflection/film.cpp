@@ -7,8 +7,6 @@
 namespace kokage {
 namespace {
 
-constexpr std::size_t kPlain = 5, kWithLayers = 17; ///< weight, subject, radiance; direct, indirect, reflection, albedo
-
 constexpr int kFilterSteps = 512;
 
 /// The pixel filter at places from 0 to 1: of the pixel before, its own and the pixel behind.
@@ -22,7 +20,7 @@ std::vector<glm::vec3> filter_table() {
 }
 
 /// The most frequent; of equals the smallest.
-std::uint32_t most_frequent_leaf(const std::vector<CameraSample>& samples) {
+std::uint32_t most_frequent_leaf(std::span<const CameraSample> samples) {
     std::vector<std::uint32_t> leaves;
     for (const CameraSample& sample : samples)
         leaves.push_back(sample.seen.leaf);
@@ -57,9 +55,17 @@ float* Film::sum(Band& band, int x, int row) const {
     return band.sums.data() + (std::size_t(row) * std::size_t(width_) + std::size_t(x)) * channels_;
 }
 
-void Film::add_to_neighbours(Band& band, int x, int row, const CameraSample& sample, float weight) const {
-    const SeenByRay& seen = sample.seen;
-    std::array<float, kWithLayers> values;
+Film::Weights Film::weights_at(const glm::vec2& place) const {
+    const glm::vec3 across = filter_at(place.x), down = filter_at(place.y);
+    Weights weights;
+    for (std::size_t j = 0; j < 3; ++j)
+        for (std::size_t i = 0; i < 3; ++i)
+            weights[3 * j + i] = across[i] * down[j];
+    return weights;
+}
+
+Film::Values Film::values_of(const SeenByRay& seen) const {
+    Values values;
     values[0] = 1;
     values[1] = seen.surface ? 1.f : 0.f;
     const auto put = [&](std::size_t at, const glm::vec3& rgb) {
@@ -74,24 +80,90 @@ void Film::add_to_neighbours(Band& band, int x, int row, const CameraSample& sam
         put(11, seen.reflection);
         put(14, seen.albedo);
     }
-    const glm::vec3 across = weight * filter_at(sample.place.x), down = filter_at(sample.place.y);
+    return values;
+}
+
+void Film::add_to_neighbours(Band& band, int x, int row, const Weights& weights, float scale,
+                             const Values& values) const {
     for (int j = 0; j < 3; ++j)
         for (int i = std::max(0, 1 - x); i < 3 && x + i - 1 < width_; ++i) {
-            const float share = across[std::size_t(i)] * down[std::size_t(j)];
+            const float share = scale * weights[std::size_t(3 * j + i)];
             float* to = sum(band, x + i - 1, row + j);
             for (std::size_t k = 0; k < channels_; ++k)
                 to[k] += share * values[k];
         }
 }
 
-void Film::add(int band, int x, int y, const std::vector<CameraSample>& samples) {
+/// Rays of a square that met the same.
+struct Film::Part {
+    std::uint32_t part;
+    float shaded = 0;  ///< rays
+    Values values{};   ///< their sum
+    Weights weights{}; ///< by all rays less by the shaded ones
+
+    void add(const Weights& more, float scale) {
+        for (std::size_t k = 0; k < more.size(); ++k)
+            weights[k] += scale * more[k];
+    }
+    void add_shaded(float rays, const Values& sum, std::size_t channels) {
+        shaded += rays;
+        for (std::size_t k = 0; k < channels; ++k)
+            values[k] += sum[k];
+    }
+    Values mean(std::size_t channels) const {
+        Values result{};
+        for (std::size_t k = 0; k < channels; ++k)
+            result[k] = values[k] / shaded;
+        return result;
+    }
+};
+
+void Film::add_alone(Band& band, int x, int row, std::span<const CameraSample> samples) const {
+    for (const CameraSample& sample : samples)
+        add_to_neighbours(band, x, row, weights_at(sample.place), 1 / float(samples.size()), values_of(sample.seen));
+}
+
+void Film::add_covered(Band& band, int x, int row, std::span<const CameraSample> samples,
+                       std::span<const CoverageRay> coverage) const {
+    std::vector<Part> parts;
+    const auto of = [&](std::uint32_t part) -> Part& {
+        for (Part& known : parts)
+            if (known.part == part)
+                return known;
+        return parts.emplace_back(Part{.part = part});
+    };
+    const float by_all = 1 / float(samples.size() + coverage.size()), by_shaded = 1 / float(samples.size());
+    Part surfaces{.part = seen_part::kFirstSurface}, all{.part = seen_part::kSurroundings};
+    for (const CameraSample& sample : samples) {
+        const Weights weights = weights_at(sample.place);
+        const Values values = values_of(sample.seen);
+        add_to_neighbours(band, x, row, weights, by_shaded, values);
+        Part& part = of(sample.seen.part);
+        part.add(weights, by_all - by_shaded);
+        part.add_shaded(1, values, channels_);
+        all.add_shaded(1, values, channels_);
+        if (sample.seen.surface)
+            surfaces.add_shaded(1, values, channels_);
+    }
+    for (const CoverageRay& ray : coverage)
+        of(ray.part).add(weights_at(ray.place), by_all);
+    for (const Part& part : parts) {
+        // What no shaded ray met looks as other surfaces do, or as anything.
+        const bool like_surfaces = part.part >= seen_part::kFirstSurface && surfaces.shaded > 0;
+        const Part& seen = part.shaded > 0 ? part : like_surfaces ? surfaces : all;
+        add_to_neighbours(band, x, row, part.weights, 1, seen.mean(channels_));
+    }
+}
+
+void Film::add(int band, int x, int y, std::span<const CameraSample> samples, std::span<const CoverageRay> coverage) {
     Band& sums = bands_[std::size_t(band)];
     const int rows = end_row(band) - first_row(band);
     if (sums.sums.empty())
         sums.sums.assign(std::size_t(rows + 2) * std::size_t(width_) * channels_, 0.f);
-    const float weight = 1 / float(samples.size());
-    for (const CameraSample& sample : samples)
-        add_to_neighbours(sums, x, y - first_row(band), sample, weight);
+    if (coverage.empty())
+        add_alone(sums, x, y - first_row(band), samples);
+    else
+        add_covered(sums, x, y - first_row(band), samples, coverage);
     if (channels_ != kWithLayers || x < 0 || x >= width_)
         return;
     if (sums.nearest.empty())

@@ -24,9 +24,12 @@ double picture_bytes(const PictureOptions& options, int threads) {
     const double picture = pixels * double(sizeof(float)) * (options.layers ? 21 : 4);
     // Of every thread: first rays of a band's squares, and all rays of a row, which may have more than others.
     constexpr double kMoreInARow = 3;
-    const double rays = columns * (double(Film::kBandRows) * SamplePlan::first_samples(options.samples) +
-                                   kMoreInARow * double(options.samples));
-    return picture + Film::bytes(options) + double(threads) * rays * double(sizeof(CameraSample));
+    const double of_row = kMoreInARow * double(options.samples),
+                 shaded = double(Film::kBandRows) * SamplePlan::first_samples(options.samples) + of_row,
+                 coverage = RadianceSpread::kMostCoverageRays * of_row;
+    const double of_column = shaded * double(sizeof(CameraSample)) + coverage * double(sizeof(CoverageRay)) +
+                             double(Film::kBandRows) * double(sizeof(RadianceSpread));
+    return picture + Film::bytes(options) + double(threads) * columns * of_column;
 }
 
 double light_bytes(const PictureOptions& options, const PatchScene& scene, int threads) {

@@ -4,6 +4,20 @@
 #include <cmath>
 
 namespace kokage {
+namespace {
+
+/// Of the variance between parts: that of evenly spread rays falls with the 3/2th power of their number.
+double left_between_parts(int coverage_rays) {
+    return std::pow(1. + coverage_rays, -1.5);
+}
+
+/// Of a shaded ray with so many coverage rays, over that of a shaded ray. Measured on an oak of 30,000 leaves.
+double cost(int coverage_rays) {
+    constexpr double kCoverageRay = 0.25;
+    return 1 + kCoverageRay * coverage_rays;
+}
+
+} // namespace
 
 SamplePlan::SamplePlan(const std::vector<double>& spreads, int samples, int first)
     : first_(first), most_(kMost * samples) {
@@ -42,17 +56,73 @@ int SamplePlan::count(double spread) const {
     return int(std::clamp(std::round(wanted), double(first_), double(most_)));
 }
 
-double spread_of(const CameraSample* samples, std::size_t count) {
-    if (count < 2)
-        return 0;
-    glm::dvec3 mean(0.), variance(0.);
-    for (std::size_t k = 0; k < count; ++k)
-        mean += displayable(samples[k].seen.radiance) / double(count);
-    for (std::size_t k = 0; k < count; ++k) {
-        const glm::dvec3 apart = displayable(samples[k].seen.radiance) - mean;
-        variance += apart * apart / double(count - 1);
+void RadianceSpread::add(const RadianceSpread& other) {
+    all += other.all;
+    in_parts += other.in_parts;
+    all_freedom += other.all_freedom;
+    in_parts_freedom += other.in_parts_freedom;
+}
+
+glm::dvec3 RadianceSpread::variance() const {
+    return all_freedom > 0 ? all / all_freedom : glm::dvec3(0.);
+}
+
+glm::dvec3 RadianceSpread::variance_in_parts() const {
+    return in_parts_freedom > 0 ? glm::min(in_parts / in_parts_freedom, variance()) : variance();
+}
+
+int RadianceSpread::coverage_rays() const {
+    const glm::dvec3 all_parts = variance(), each_part = variance_in_parts();
+    const double sum = all_parts.r + all_parts.g + all_parts.b, rest = each_part.r + each_part.g + each_part.b;
+    int best = 0;
+    double least = sum;
+    for (int rays = 1; rays <= kMostCoverageRays; ++rays)
+        if (const double product = (rest + left_between_parts(rays) * (sum - rest)) * cost(rays); product < least) {
+            best = rays;
+            least = product;
+        }
+    return best;
+}
+
+double RadianceSpread::deviation(int coverage_rays) const {
+    const glm::dvec3 rest = glm::mix(variance_in_parts(), variance(), left_between_parts(coverage_rays));
+    return (std::sqrt(rest.r) + std::sqrt(rest.g) + std::sqrt(rest.b)) / (3 * cost(coverage_rays));
+}
+
+RadianceSpread spread_of(std::span<const CameraSample> samples) {
+    RadianceSpread spread;
+    if (samples.size() < 2)
+        return spread;
+    struct Part {
+        std::uint32_t part;
+        double count = 0;
+        glm::dvec3 sum{0.};
+    };
+    std::vector<Part> parts;
+    const auto of = [&](const CameraSample& sample) -> Part& {
+        for (Part& known : parts)
+            if (known.part == sample.seen.part)
+                return known;
+        return parts.emplace_back(Part{.part = sample.seen.part});
+    };
+    glm::dvec3 mean(0.);
+    for (const CameraSample& sample : samples) {
+        const glm::dvec3 radiance = displayable(sample.seen.radiance);
+        Part& part = of(sample);
+        part.count += 1;
+        part.sum += radiance;
+        mean += radiance / double(samples.size());
     }
-    return (std::sqrt(variance.r) + std::sqrt(variance.g) + std::sqrt(variance.b)) / 3;
+    for (const CameraSample& sample : samples) {
+        const Part& part = of(sample);
+        const glm::dvec3 radiance = displayable(sample.seen.radiance), apart = radiance - mean,
+                         within = radiance - part.sum / part.count;
+        spread.all += apart * apart;
+        spread.in_parts += within * within;
+    }
+    spread.all_freedom = double(samples.size() - 1);
+    spread.in_parts_freedom = double(samples.size() - parts.size());
+    return spread;
 }
 
 } // namespace kokage

@@ -28,6 +28,7 @@ SeenByRay SeenByRay::surface_at(const SurfacePoint& at, float distance, const Pa
     seen.distance = distance;
     const Patch& patch = patches.patches[at.patch];
     seen.leaf = patch.kind == PatchKind::leaf ? patch.leaf + 1 : 0;
+    seen.part = seen_part::of_patch(at.patch, at.front);
     seen.surface = true;
     return seen;
 }
@@ -38,6 +39,7 @@ SeenByRay SeenByRay::ground_at(const glm::vec3& albedo, float distance, const Su
     seen.albedo = albedo;
     seen.normal = {0, 1, 0};
     seen.distance = distance;
+    seen.part = seen_part::kGround;
     return seen;
 }
 

@@ -8,13 +8,23 @@
 
 namespace kokage {
 
+/// Tells apart what rays meet, so that rays that meet the same have much the same radiance: surroundings, the ground,
+/// or one side of a patch.
+namespace seen_part {
+constexpr std::uint32_t kSurroundings = 0, kGround = 1, kFirstSurface = 2;
+inline std::uint32_t of_patch(std::uint32_t patch, bool front) {
+    return kFirstSurface + 2 * patch + !front;
+}
+} // namespace seen_part
+
 /// Of a surface or the ground: radiance = direct + indirect + reflection. Of surroundings: radiance alone.
 struct SeenByRay {
     glm::vec3 radiance{0.f}, direct{0.f}, indirect{0.f}, reflection{0.f};
     glm::vec3 albedo{0.f}, normal{0.f};
     float distance = std::numeric_limits<float>::infinity(); ///< infinite: surroundings
     std::uint32_t leaf = 0;                                  ///< its number, from 1; 0: no leaf
-    bool surface = false;                                    ///< neither ground nor surroundings
+    std::uint32_t part = seen_part::kSurroundings;
+    bool surface = false; ///< neither ground nor surroundings
 
     static SeenByRay surface_at(const SurfacePoint& at, float distance, const PatchScene& patches,
                                 const SurfaceRadiance& light);
