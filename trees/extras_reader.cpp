@@ -1,6 +1,7 @@
 #include "trees/extras_reader.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <tiny_gltf.h>
 
 namespace kokage {

@@ -2,7 +2,7 @@
 // Reads the members of `extras.kokage` (tree_extras.h). Private to trees.
 #include "common/gltf/gltf_document.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 

@@ -1,9 +1,9 @@
 #pragma once
 // What `kokage bake` can be told.
 #include "reflection/maps/baked_map.h"
+#include "viewer/scene/cli_forward.h"
 #include "viewer/scene/surroundings.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>

@@ -7,6 +7,7 @@
 #include "tests/benchmark/trees_benchmark.h"
 #include "viewer/command.h"
 
+#include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
 #include <stdexcept>

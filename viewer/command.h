@@ -1,8 +1,8 @@
 #pragma once
 // The subcommands of `kokage`: one function each, one file each.
+#include "viewer/scene/cli_forward.h"
 #include "viewer/terminal_progress.h"
 
-#include <CLI/CLI.hpp>
 #include <functional>
 
 namespace kokage {

@@ -9,6 +9,7 @@
 #include "viewer/scene/output_check.h"
 #include "viewer/scene/tree_source.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <filesystem>
 #include <memory>

@@ -13,6 +13,7 @@
 #include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -13,6 +13,7 @@
 #include "viewer/stop_signal.h"
 #include "viewer/write_json.h"
 
+#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>

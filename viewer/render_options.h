@@ -1,8 +1,8 @@
 #pragma once
 // What `kokage render` can be told.
+#include "viewer/scene/cli_forward.h"
 #include "viewer/scene/render_scene.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <string>
 #include <vector>

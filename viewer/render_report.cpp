@@ -2,6 +2,8 @@
 #include "common/services/memory.h"
 #include "viewer/report_json.h"
 
+#include <nlohmann/json.hpp>
+
 namespace kokage {
 namespace {
 using Json = nlohmann::ordered_json;

@@ -1,6 +1,7 @@
 #include "viewer/report_json.h"
 
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 namespace kokage {
 using Json = nlohmann::ordered_json;

@@ -3,7 +3,7 @@
 #include "common/environment/environment.h"
 #include "common/services/work_report.h"
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <utility>
 #include <vector>

@@ -5,6 +5,7 @@
 #include "viewer/stop_signal.h"
 #include "viewer/terminal_progress.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <set>
 
 namespace kokage {
@@ -102,6 +103,26 @@ void JsonReader::fail(const std::string& what) const {
 
 JsonReader JsonReader::inner(const Json& value, const std::string& token) const {
     return {value, file_, pointer_ + "/" + escaped(token)};
+}
+
+bool JsonReader::is_object() const {
+    return value_->is_object();
+}
+
+bool JsonReader::is_array() const {
+    return value_->is_array();
+}
+
+bool JsonReader::is_string() const {
+    return value_->is_string();
+}
+
+bool JsonReader::is_number() const {
+    return value_->is_number();
+}
+
+bool JsonReader::is_boolean() const {
+    return value_->is_boolean();
 }
 
 std::string JsonReader::found() const {

@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <initializer_list>
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -30,11 +30,11 @@ class JsonReader {
     /// The value, or what kind of value it is, for such a message.
     std::string found() const;
 
-    bool is_object() const { return value_->is_object(); }
-    bool is_array() const { return value_->is_array(); }
-    bool is_string() const { return value_->is_string(); }
-    bool is_number() const { return value_->is_number(); }
-    bool is_boolean() const { return value_->is_boolean(); }
+    bool is_object() const;
+    bool is_array() const;
+    bool is_string() const;
+    bool is_number() const;
+    bool is_boolean() const;
 
     /// Refuses anything but an object with some of these keys, and tells the nearest one.
     void check_keys(std::initializer_list<const char*> known) const;

@@ -2,6 +2,8 @@
 
 #include "common/services/error.h"
 
+#include <CLI/CLI.hpp>
+
 namespace kokage {
 namespace fs = std::filesystem;
 

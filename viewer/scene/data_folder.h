@@ -1,6 +1,7 @@
 #pragma once
 // The folder that trees and environments are also looked for in: --data, or the environment variable KOKAGE_DATA.
-#include <CLI/CLI.hpp>
+#include "viewer/scene/cli_forward.h"
+
 #include <filesystem>
 #include <string>
 #include <vector>

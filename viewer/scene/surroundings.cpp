@@ -8,6 +8,7 @@
 #include "viewer/scene/data_folder.h"
 #include "viewer/scene/values.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

@@ -3,8 +3,8 @@
 #include "common/environment/environment.h"
 #include "common/scene/patch_scene.h"
 #include "trees/tree.h"
+#include "viewer/scene/cli_forward.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>

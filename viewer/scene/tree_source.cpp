@@ -5,6 +5,7 @@
 #include "trees/read_tree.h"
 #include "viewer/scene/output_check.h"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <charconv>

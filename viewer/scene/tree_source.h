@@ -3,8 +3,8 @@
 #include "common/services/progress.h"
 #include "trees/species.h"
 #include "trees/tree.h"
+#include "viewer/scene/cli_forward.h"
 
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <optional>
 #include <string>

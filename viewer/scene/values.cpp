@@ -1,6 +1,7 @@
 #include "viewer/scene/values.h"
 #include "common/services/error.h"
 
+#include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
 #include <cstdio>

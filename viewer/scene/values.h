@@ -1,8 +1,8 @@
 #pragma once
 // Values as they stand on the command line.
 #include "common/types.h"
+#include "viewer/scene/cli_forward.h"
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <limits>
 #include <string>
