@@ -50,7 +50,7 @@ TEST(IterationConvergence, BundlesResidualsFallFromBounceToBounce) {
 // a^k (1 - a) / (1 - a^(k+1)) once light has mixed.
 TEST(IterationConvergence, InAClosedRoomBundlesFollowTheGeometricSeries) {
     const double a = 0.9;
-    Environment lamp = test::constant_environment(glm::vec3(0));
+    Environment lamp = constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {1.3f, 3.3f, 1.3f}, glm::vec3(1)}};
     const Solution solution = bounce(test::crown_in_a_room(400, test::grey_leaf(float(a))), lamp, 41);
     const double factor = solution.residuals[40] / solution.residuals[30];

@@ -66,7 +66,7 @@ TEST(IterationConvergence, ResidualsFallFromBounceToBounce) {
 TEST(IterationConvergence, InAClosedRoomLightMapsFollowTheGeometricSeries) {
     const double a = 0.9;
     test::SmallTree room = test::crown_in_a_room(400, test::grey_leaf(float(a)));
-    Environment lamp = test::constant_environment(glm::vec3(0));
+    Environment lamp = constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {0, 4.2f, 0}, glm::vec3(1)}};
     ShadingOptions options;
     options.method = Method::light_maps;
@@ -85,7 +85,7 @@ TEST(IterationConvergence, ASettingThatDoesNotContractIsSaidPlainly) {
     test::add_branch(room.tree.skeleton, -1, {0, -1, 0}, {0, 0, 0});
     test::add_branch(room.tree.skeleton, 0, {0, 0, 0}, {0.1f, 0, 0}); // the one map, in the middle
     room.tree.leaves = {{{10, 0, 0}, 1}};                             // its sphere holds all walls
-    Environment lamp = test::constant_environment(glm::vec3(0));
+    Environment lamp = constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {0.2f, 0.5f, 0}, glm::vec3(1)}};
     for (const Method method : {Method::paper, Method::light_maps}) {
         ShadingOptions options;

@@ -38,7 +38,7 @@ TEST(BundlesStress, OneLeaf) {
         test::SmallTree lone;
         lone.scene.optics = {test::grey_leaf(0.5f)};
         test::add_rectangle(lone.scene, {0, 1, 0}, {1, 0, 0}, v);
-        const Solution solution = shade(lone, test::constant_environment(glm::vec3(2)));
+        const Solution solution = shade(lone, constant_environment(glm::vec3(2)));
         expect_finite(solution);
         EXPECT_NEAR(solution.radiance.front[0].r, 1, 1e-3);
         EXPECT_NEAR(solution.radiance.back[0].r, 1, 1e-3);
@@ -60,7 +60,7 @@ TEST(BundlesStress, CoincidentAndEmptyLeavesAndBlackSkies) {
     test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::grey_leaf(1));
     test::add_coincident_and_empty_leaves(tree);
     expect_finite(shade(tree, test::sky_and_sun()));
-    const Solution black = shade(tree, test::constant_environment(glm::vec3(0)));
+    const Solution black = shade(tree, constant_environment(glm::vec3(0)));
     expect_finite(black);
     EXPECT_EQ(test::mean(black), 0);
     EXPECT_EQ(black.energy_in, 0);
@@ -94,7 +94,7 @@ TEST(BundlesStress, LightIsLinearOverSixtyPowersOfTen) {
         if (ground)
             tree.scene.ground = Ground{0.5f};
         Environment environment = test::sky_and_sun();
-        environment.remainder = test::constant_environment(glm::vec3(0)).remainder;
+        environment.remainder = constant_environment(glm::vec3(0)).remainder;
         environment.distant_lights[0].irradiance = glm::vec3(1);
         environment.point_lights = {{"lamp", {2, 2, 0}, glm::vec3(1)}};
         const double expected = test::mean(shade(tree, environment));
@@ -122,7 +122,7 @@ TEST(BundlesStress, FaintAndBrightLightsTogether) {
 
 TEST(BundlesStress, NothingAbsorbs) {
     test::SmallTree tree = test::ball_on_a_skeleton(1000, 5, test::grey_leaf(1));
-    const Solution furnace = shade(tree, test::constant_environment(glm::vec3(1)));
+    const Solution furnace = shade(tree, constant_environment(glm::vec3(1)));
     expect_finite(furnace);
     EXPECT_NEAR(test::mean(furnace), 1, 1e-3);
     tree.scene.ground = Ground{0.9f, glm::vec3(1)};
@@ -140,7 +140,7 @@ TEST(BundlesStress, AnOpaqueBlackTree) {
 TEST(BundlesStress, LampsInsideLeavesAndAtTheGround) {
     test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::bright_leaf());
     tree.scene.ground = Ground{0.9f};
-    Environment environment = test::constant_environment(glm::vec3(0.1f));
+    Environment environment = constant_environment(glm::vec3(0.1f));
     environment.point_lights = {{"in a leaf", tree.tree.leaves[0].centre, glm::vec3(1)},
                                 {"at a corner", tree.scene.positions[0], glm::vec3(1)},
                                 {"on the ground", {0, 0.9f, 0}, glm::vec3(1)},
@@ -183,7 +183,7 @@ TEST(BundlesStress, AHundredThousandTinyLeavesBesideAWideCard) {
     test::SmallTree tree;
     tree.scene = test::random_crown(100000, 3, test::grey_leaf(1));
     test::add_rectangle(tree.scene, {-300, 0, -300}, {0, 0, 600}, {600, 0, 0});
-    const Solution furnace = shade(tree, test::constant_environment(glm::vec3(1)), 4);
+    const Solution furnace = shade(tree, constant_environment(glm::vec3(1)), 4);
     expect_finite(furnace);
     EXPECT_NEAR(test::mean(furnace), 1, 1e-4);
     EXPECT_TRUE(std::any_of(furnace.report.counts.begin(), furnace.report.counts.end(), [](const auto& count) {

@@ -37,7 +37,7 @@ TEST_P(MapMethods, FarFromTheOriginNothingBreaks) {
 TEST_P(MapMethods, LightIsLinearOverSixtyPowersOfTen) {
     const test::SmallTree tree = test::ball_on_a_skeleton(300, 2, test::bright_leaf());
     Environment environment = test::sky_and_sun();
-    environment.remainder = test::constant_environment(glm::vec3(0)).remainder;
+    environment.remainder = constant_environment(glm::vec3(0)).remainder;
     environment.distant_lights[0].irradiance = glm::vec3(1);
     const double expected = test::mean(shade(tree, environment));
     for (float power : {1e-30f, 1e30f}) {
@@ -58,14 +58,14 @@ TEST_P(MapMethods, CoincidentAndEmptyLeavesAndBlackSkies) {
     test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::grey_leaf(1));
     test::add_coincident_and_empty_leaves(tree);
     test::expect_finite(shade(tree, test::sky_and_sun()));
-    const Solution black = shade(tree, test::constant_environment(glm::vec3(0)));
+    const Solution black = shade(tree, constant_environment(glm::vec3(0)));
     test::expect_finite(black);
     EXPECT_EQ(test::mean(black), 0);
 }
 
 TEST_P(MapMethods, ALampInsideALeafAndAtAMap) {
     const test::SmallTree tree = test::ball_on_a_skeleton(50, 2, test::bright_leaf());
-    Environment environment = test::constant_environment(glm::vec3(0.1f));
+    Environment environment = constant_environment(glm::vec3(0.1f));
     const Leaf& leaf = tree.tree.leaves[0];
     environment.point_lights = {{"at a leaf", leaf.centre, glm::vec3(1)},
                                 {"at a map", tree.tree.skeleton.branches[1].nodes[0].position, glm::vec3(1)}};

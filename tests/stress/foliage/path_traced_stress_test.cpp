@@ -73,7 +73,7 @@ TEST(PathTracedStress, LightsOfAnyStrength) {
     const PatchScene scene = test::random_crown(100, 3.5f, test::bright_leaf());
     double first = 0;
     for (const float power : {1e-30f, 1.f, 1e30f}) {
-        Environment environment = test::constant_environment(glm::vec3(0));
+        Environment environment = constant_environment(glm::vec3(0));
         environment.distant_lights = test::sky_and_sun().distant_lights;
         environment.distant_lights[0].irradiance = glm::vec3(power);
         const Solution solution = shade(scene, environment, 16);
@@ -91,8 +91,7 @@ TEST(PathTracedStress, LightsOfAnyStrength) {
 }
 
 TEST(PathTracedStress, BlackEnvironmentAndBlackLeaves) {
-    const Solution dark =
-        shade(test::random_crown(50, 3, test::bright_leaf()), test::constant_environment(glm::vec3(0)), 0);
+    const Solution dark = shade(test::random_crown(50, 3, test::bright_leaf()), constant_environment(glm::vec3(0)), 0);
     expect_finite(dark);
     EXPECT_EQ(test::mean(dark), 0);
     EXPECT_EQ(*dark.estimated_error, 0);
@@ -114,7 +113,7 @@ TEST(PathTracedStress, AlbedoOneInsideAClosedWhiteBox) {
 
 TEST(PathTracedStress, ImagesOfOnePixelAndOfSixteenThousand) {
     const PatchScene scene = test::random_crown(50, 3, test::realistic_leaf());
-    expect_finite(shade(scene, test::constant_environment(glm::vec3(1)), 8));
+    expect_finite(shade(scene, constant_environment(glm::vec3(1)), 8));
     Environment wide;
     wide.remainder = Image(16384, 2, 3);
     for (std::size_t i = 0; i < wide.remainder.pixels.size(); ++i)

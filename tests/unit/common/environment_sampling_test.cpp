@@ -81,8 +81,7 @@ TEST(RemainderSampler, RefusesAnImageWithoutPixels) {
 }
 
 TEST(RemainderSampler, ContrastOfConstantAndBlack) {
-    const Environment constant = test::constant_environment(glm::vec3(3)),
-                      black = test::constant_environment(glm::vec3(0));
+    const Environment constant = constant_environment(glm::vec3(3)), black = constant_environment(glm::vec3(0));
     EXPECT_NEAR(RemainderSampler(constant.remainder).contrast(), 1, 1e-9);
     const RemainderSampler dark(black.remainder);
     EXPECT_EQ(dark.contrast(), 1);
@@ -109,7 +108,7 @@ glm::dvec3 plain_sum(const Environment& environment, const glm::vec3& point, con
 }
 
 TEST(LightSampler, ManyLightsAddUpToTheirSum) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     Random random(2);
     for (int i = 0; i < 40; ++i) {
         DistantLight distant;
@@ -138,7 +137,7 @@ TEST(LightSampler, ManyLightsAddUpToTheirSum) {
 }
 
 TEST(LightSampler, RegionsDrawTheirTexelsAsSampleLightDoes) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     DistantLight region;
     region.direction = {0, 1, 0};
     region.half_angle = 0.5f;
@@ -172,7 +171,7 @@ TEST(LightSampler, RegionsDrawTheirTexelsAsSampleLightDoes) {
 }
 
 TEST(LightSampler, LightsThatReachNothingCostNoRay) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     environment.distant_lights.resize(2);
     environment.distant_lights[0].direction = {0, 1, 0};
     environment.distant_lights[0].irradiance = glm::vec3(1);
@@ -182,11 +181,11 @@ TEST(LightSampler, LightsThatReachNothingCostNoRay) {
     EXPECT_TRUE(sampler.sample({0, 0, 0}, {0, 1, 0}, glm::vec3(1), glm::vec3(0), 0.999f, {0.5f, 0.5f}));
     EXPECT_FALSE(sampler.sample({0, 0, 0}, {0, -1, 0}, glm::vec3(1), glm::vec3(0), 0.f, {0.5f, 0.5f}));
     EXPECT_TRUE(sampler.sample({0, 0, 0}, {0, -1, 0}, glm::vec3(1), glm::vec3(1), 0.f, {0.5f, 0.5f}));
-    EXPECT_TRUE(LightSampler(test::constant_environment(glm::vec3(1))).empty());
+    EXPECT_TRUE(LightSampler(constant_environment(glm::vec3(1))).empty());
 }
 
 TEST(LightSampler, ExtremeLightsStayFinite) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     for (const float power : {1e-30f, 1e30f}) {
         DistantLight light;
         light.direction = {0, 1, 0};

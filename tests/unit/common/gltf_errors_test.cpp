@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-std::string complaint(const GltfText& file) {
+std::string file_complaint(const GltfText& file) {
     TemporaryFolder folder;
     file.write(folder / "scene.gltf");
     try {
@@ -40,7 +40,7 @@ struct Case {
 };
 
 TEST(GltfErrors, AreOneLineThatNamesTheCause) {
-    ASSERT_EQ(complaint(good_file()), "");
+    ASSERT_EQ(file_complaint(good_file()), "");
     const std::vector<Case> cases = {
         {"an unknown required extension", [](GltfText& f) { f.json["extensionsRequired"] = {"EXT_of_tomorrow"}; },
          "EXT_of_tomorrow"},
@@ -157,15 +157,15 @@ GltfText chain(int depth) {
 }
 
 TEST(GltfErrors, NodesHaveAMostDepth) {
-    EXPECT_EQ(complaint(chain(1000)), "");
-    EXPECT_NE(complaint(chain(1001)).find("nested deeper than the limit of 1000"), std::string::npos);
+    EXPECT_EQ(file_complaint(chain(1000)), "");
+    EXPECT_NE(file_complaint(chain(1001)).find("nested deeper than the limit of 1000"), std::string::npos);
 }
 
 TEST(GltfErrors, NamesAreShownOnOneLineOfSomeLength) {
     GltfText file = good_file();
     file.json["meshes"][0]["name"] = "\x1b[31mred\n" + std::string(5000, 'x');
     file.json["meshes"][0]["primitives"][0]["attributes"]["NORMAL"] = file.normals({0, 0, 1});
-    const std::string what = complaint(file);
+    const std::string what = file_complaint(file);
     EXPECT_NE(what.find("'?[31mred?xxx"), std::string::npos) << what;
     EXPECT_LT(what.size(), 400u);
 }

@@ -10,7 +10,7 @@
 namespace kokage {
 namespace {
 
-std::string complaint(const std::filesystem::path& path) {
+std::string resource_complaint(const std::filesystem::path& path) {
     try {
         flatten(GltfDocument::read(path));
     } catch (const InputError& error) {
@@ -19,10 +19,10 @@ std::string complaint(const std::filesystem::path& path) {
     return "";
 }
 
-std::string complaint(const GltfText& file) {
+std::string resource_complaint(const GltfText& file) {
     TemporaryFolder folder;
     file.write(folder / "tree.gltf");
-    return complaint(folder / "tree.gltf");
+    return resource_complaint(folder / "tree.gltf");
 }
 
 void expect_says(const std::string& what, const std::string& words) {
@@ -42,7 +42,7 @@ TEST(GltfResources, BuffersMustLieInTheirOwnFolder) {
     put(folder / "scene" / "100% b.bin", bytes);
     const auto with = [&](const std::string& uri) {
         put(folder / "scene" / "tree.gltf", plain.text_beside(uri));
-        return complaint(folder / "scene" / "tree.gltf");
+        return resource_complaint(folder / "scene" / "tree.gltf");
     };
     EXPECT_EQ(with("100%25%20b.bin"), "");
     EXPECT_EQ(with("100% b.bin"), "") << "names that were not escaped";
@@ -70,10 +70,10 @@ TEST(GltfResources, ImagesMayLieInANeighbouringFolder) {
     GltfText file = tree_of(plain_primitive);
     file.json["images"] = {{{"uri", "../textures/leaf.png"}}};
     file.write(folder / "scene" / "tree.gltf");
-    EXPECT_EQ(complaint(folder / "scene" / "tree.gltf"), "");
+    EXPECT_EQ(resource_complaint(folder / "scene" / "tree.gltf"), "");
     file.json["images"] = {{{"uri", "..\\textures\\leaf.png"}}};
     file.write(folder / "scene" / "tree.gltf");
-    EXPECT_EQ(complaint(folder / "scene" / "tree.gltf"), "");
+    EXPECT_EQ(resource_complaint(folder / "scene" / "tree.gltf"), "");
 }
 
 /// A KTX2 file's first bytes.
@@ -89,7 +89,7 @@ TEST(GltfResources, ColoursInBasisUAreReplacedAndMasksRefused) {
     file.json["images"][1]["bufferView"] = file.view(ktx2());
     file.json["textures"] = {{{"extensions", {{"KHR_texture_basisu", {{"source", 1}}}}}}};
     require(file, "KHR_texture_basisu");
-    const std::string refused = complaint(file);
+    const std::string refused = resource_complaint(file);
     expect_says(refused, "material 1 'leaf': its alpha mask is in KTX2 (BasisU), which can't be decoded");
     expect_says(refused, "export its textures as PNG, JPEG or WebP");
 
@@ -104,7 +104,7 @@ TEST(GltfResources, ColoursInBasisUAreReplacedAndMasksRefused) {
 
     file.json["materials"][1]["alphaMode"] = "MASK"; // a fallback that can be read is taken
     file.json["textures"][0]["source"] = 0;
-    EXPECT_EQ(complaint(file), "");
+    EXPECT_EQ(resource_complaint(file), "");
 }
 
 TEST(GltfResources, ExtensionsThatAreNoObjectsAreAsIfTheyWereNot) {
@@ -116,13 +116,13 @@ TEST(GltfResources, ExtensionsThatAreNoObjectsAreAsIfTheyWereNot) {
             leaf["extensions"][name] = value;
         leaf["pbrMetallicRoughness"]["baseColorTexture"]["extensions"]["KHR_texture_transform"] = value;
         file.json["textures"][0]["extensions"]["EXT_texture_webp"] = value;
-        EXPECT_EQ(complaint(file), "") << value;
+        EXPECT_EQ(resource_complaint(file), "") << value;
         leaf["extensions"]["KHR_materials_pbrSpecularGlossiness"] = value;
-        EXPECT_EQ(complaint(file), "") << value;
+        EXPECT_EQ(resource_complaint(file), "") << value;
         file.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"] = value;
-        EXPECT_EQ(complaint(file), "") << value;
+        EXPECT_EQ(resource_complaint(file), "") << value;
         file.json["nodes"][1]["extensions"]["EXT_mesh_gpu_instancing"] = {{"attributes", value}};
-        expect_says(complaint(file), "none of TRANSLATION");
+        expect_says(resource_complaint(file), "none of TRANSLATION");
     }
 }
 
@@ -131,7 +131,7 @@ TEST(GltfResources, NormalMapsThatAreMissingDoNoHarm) {
     file.json["images"].push_back({{"uri", "missing_normal.png"}});
     file.json["textures"].push_back({{"source", 1}});
     file.json["materials"][1]["normalTexture"] = {{"index", 1}};
-    EXPECT_EQ(complaint(file), "");
+    EXPECT_EQ(resource_complaint(file), "");
 }
 
 TEST(GltfResources, CountsThatLieAreRefusedBeforeMemoryIsTaken) {
@@ -145,25 +145,25 @@ TEST(GltfResources, CountsThatLieAreRefusedBeforeMemoryIsTaken) {
             for (const std::uint64_t count :
                  {std::uint64_t(3) << 20, std::uint64_t(3) << 40, ~std::uint64_t(0) / 3 * 3}) {
                 extension["count"] = count;
-                expect_says(complaint(meshopt), "can hold");
+                expect_says(resource_complaint(meshopt), "can hold");
             }
             extension = original;
             extension["byteStride"] = 4096;
-            expect_says(complaint(meshopt), "stride of 4096");
+            expect_says(resource_complaint(meshopt), "stride of 4096");
             extension = original;
             extension["mode"] = "TETRAHEDRA";
-            expect_says(complaint(meshopt), "TETRAHEDRA");
+            expect_says(resource_complaint(meshopt), "TETRAHEDRA");
             extension = original;
             extension["filter"] = "COLOR";
-            expect_says(complaint(meshopt), "filter 'COLOR'");
+            expect_says(resource_complaint(meshopt), "filter 'COLOR'");
             extension = original;
         }
-    EXPECT_EQ(complaint(meshopt), "");
+    EXPECT_EQ(resource_complaint(meshopt), "");
 
     // Draco, by edges: vertices and faces follow the header of 11 bytes and the method's byte, 7 bits in each byte.
     GltfText draco =
         tree_of([](GltfText& f, const PlainMesh& m, int material) { return draco_primitive(f, m, material, false); });
-    ASSERT_EQ(complaint(draco), "");
+    ASSERT_EQ(resource_complaint(draco), "");
     const nlohmann::json& primitive = draco.json["meshes"][1]["primitives"][0];
     const auto view = primitive["extensions"]["KHR_draco_mesh_compression"]["bufferView"].get<std::size_t>();
     const auto offset = draco.json["bufferViews"][view]["byteOffset"].get<std::size_t>();
@@ -173,9 +173,9 @@ TEST(GltfResources, CountsThatLieAreRefusedBeforeMemoryIsTaken) {
     for (const std::size_t at : {12u, 17u})
         for (std::size_t i = 0; i < 5; ++i)
             draco.bytes[offset + at + i] = i < 4 ? 0xff : 0x04;
-    expect_says(complaint(draco), "faces and 1342177279 vertices, more than its");
+    expect_says(resource_complaint(draco), "faces and 1342177279 vertices, more than its");
     draco.bytes[offset + 6] = 1;
-    expect_says(complaint(draco), "is of version 2.1");
+    expect_says(resource_complaint(draco), "is of version 2.1");
 }
 
 TEST(NamedFile, DecodesEscapes) {

@@ -17,7 +17,7 @@ using namespace kokage;
 namespace {
 
 constexpr std::array<double, 3> hemispheres = {-1, 0, 1};
-constexpr std::array<double, 2> upper = {0, 1}, whole = {-1, 1};
+constexpr std::array<double, 2> kUpperHalf = {0, 1}, kWholeSphere = {-1, 1};
 
 TEST(Lobes, CosineAgreesWithQuadratureForEveryBand) {
     for (int bands : {1, 2, 7, 40, 200}) {
@@ -43,7 +43,7 @@ TEST(Lobes, PhongAgreesWithQuadrature) {
     for (double exponent : {0.0, 1.0, 2.0, 7.0, 32.0, 300.0}) {
         const auto k = phong_lobe(40, exponent);
         const auto slow = zonal_coefficients(
-            40, [&](double t) { return (exponent + 1) / (2 * kPiDouble) * std::pow(t, exponent); }, upper, 400);
+            40, [&](double t) { return (exponent + 1) / (2 * kPiDouble) * std::pow(t, exponent); }, kUpperHalf, 400);
         for (std::size_t l = 0; l < k.size(); ++l)
             EXPECT_NEAR(k[l], slow[l], 1e-12) << "exponent " << exponent << " l " << l;
     }
@@ -237,7 +237,7 @@ TEST(Zonal, FunkHeckeAgreesWithQuadratureOverTheSphere) {
     for (double& c : f)
         c = random.uniform_double() - 0.5;
     auto h = [](double t) { return 0.3 + t * (0.5 + t * (0.7 - 0.2 * t)); }; // a cubic: the quadrature is exact
-    const auto zonal = zonal_coefficients(bands, h, whole, 20);
+    const auto zonal = zonal_coefficients(bands, h, kWholeSphere, 20);
     std::vector<double> convolved = f;
     convolve_zonal(std::span<double>(convolved), std::span<const double>(zonal));
     const DirectionSet rings = gauss_rings(bands + 3);

@@ -17,7 +17,7 @@ MeshScene load(const std::string& obj, const std::map<std::string, std::string>&
     return read_obj_scene(folder / "tree.obj");
 }
 
-std::string complaint(const std::string& obj, const std::map<std::string, std::string>& files = {}) {
+std::string obj_complaint(const std::string& obj, const std::map<std::string, std::string>& files = {}) {
     try {
         load(obj, files);
     } catch (const InputError& error) {
@@ -167,14 +167,14 @@ TEST(ObjScene, WhatIsMissingIsSaidOrRefused) {
     EXPECT_TRUE(without_color.materials[0].color_is_lost);
     ASSERT_EQ(without_color.notes.size(), 1u);
     EXPECT_NE(without_color.notes[0].find("'gone.png' is not there"), std::string::npos) << without_color.notes[0];
-    EXPECT_NE(complaint(obj, {{"tree.mtl", "newmtl leaf\nmap_d gone.png\n"}}).find("alpha mask 'gone.png'"),
+    EXPECT_NE(obj_complaint(obj, {{"tree.mtl", "newmtl leaf\nmap_d gone.png\n"}}).find("alpha mask 'gone.png'"),
               std::string::npos);
 }
 
 TEST(ObjScene, VerticesThatAreNoNumbersAreRefusedWithTheirLine) {
     for (const char* vertex :
          {"v 1e300 0 0", "v nan 0 0", "v 0 inf 0", "  v 0 0 -Inf", "v 0 zero 0", "v 0 0", "v 1 2 #"}) {
-        const std::string said = complaint("# a square\n" + std::string(vertex) + "\n" + kSquare + "f 1 2 3\n");
+        const std::string said = obj_complaint("# a square\n" + std::string(vertex) + "\n" + kSquare + "f 1 2 3\n");
         EXPECT_NE(said.find("line 2: a vertex needs three finite numbers"), std::string::npos)
             << vertex << ": " << said;
     }
@@ -184,18 +184,18 @@ TEST(ObjScene, VerticesThatAreNoNumbersAreRefusedWithTheirLine) {
 }
 
 TEST(ObjScene, ErrorsNameTheFace) {
-    EXPECT_NE(complaint("").find("no faces"), std::string::npos);
-    EXPECT_NE(complaint(kSquare + "f 1 2\n").find("no faces"), std::string::npos);
-    EXPECT_NE(complaint(kSquare + "f 1 2 3\nf 1 2 5\n").find("face 2 names vertex 5 of 4"), std::string::npos);
-    EXPECT_NE(complaint(kSquare + "f 1 2 -5\n").find("face 1 names vertex -5 of 4"), std::string::npos);
-    EXPECT_NE(complaint(kSquare + "f 1/9 2 3\n").find("texture coordinate 9"), std::string::npos);
-    EXPECT_NE(complaint(kSquare + "f 0 2 3\n").find("without a vertex"), std::string::npos);
-    EXPECT_NE(complaint(std::string("v 0 0\0 0\n", 9)).find("zero byte"), std::string::npos);
-    EXPECT_NE(complaint("# " + std::string(100000, 'x')).find("longer than the limit"), std::string::npos);
+    EXPECT_NE(obj_complaint("").find("no faces"), std::string::npos);
+    EXPECT_NE(obj_complaint(kSquare + "f 1 2\n").find("no faces"), std::string::npos);
+    EXPECT_NE(obj_complaint(kSquare + "f 1 2 3\nf 1 2 5\n").find("face 2 names vertex 5 of 4"), std::string::npos);
+    EXPECT_NE(obj_complaint(kSquare + "f 1 2 -5\n").find("face 1 names vertex -5 of 4"), std::string::npos);
+    EXPECT_NE(obj_complaint(kSquare + "f 1/9 2 3\n").find("texture coordinate 9"), std::string::npos);
+    EXPECT_NE(obj_complaint(kSquare + "f 0 2 3\n").find("without a vertex"), std::string::npos);
+    EXPECT_NE(obj_complaint(std::string("v 0 0\0 0\n", 9)).find("zero byte"), std::string::npos);
+    EXPECT_NE(obj_complaint("# " + std::string(100000, 'x')).find("longer than the limit"), std::string::npos);
     std::string many = kSquare + "f";
     for (int i = 0; i < 1025; ++i)
         many += " " + std::to_string(i % 4 + 1);
-    EXPECT_NE(complaint(many + "\n").find("1025 corners"), std::string::npos);
+    EXPECT_NE(obj_complaint(many + "\n").find("1025 corners"), std::string::npos);
 }
 
 } // namespace

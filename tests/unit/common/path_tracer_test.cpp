@@ -33,11 +33,11 @@ void expect_near(const glm::dvec3& value, const glm::dvec3& expected, double rel
         EXPECT_NEAR(value[c], expected[c], relative * expected[c] + 1e-12) << "channel " << c;
 }
 
-const Environment black = test::constant_environment(glm::vec3(0));
+const Environment black = constant_environment(glm::vec3(0));
 
 TEST(PathTracer, WhiteFurnaceIsExactOnEveryPath) {
     // Nothing absorbs and all directions send 1, so every single path brings exactly pi, however often it is scattered.
-    const Environment environment = test::constant_environment(glm::vec3(1));
+    const Environment environment = constant_environment(glm::vec3(1));
     for (const bool with_ground : {false, true}) {
         PatchScene scene = test::random_crown(2000, 8, {glm::vec3(0.7f), glm::vec3(0.3f)});
         if (with_ground)
@@ -59,7 +59,7 @@ TEST(PathTracer, WhiteFurnaceIsExactOnEveryPath) {
 }
 
 TEST(PathTracer, WhiteFurnaceWithRouletteAndMixtureOnAverage) {
-    const Environment environment = test::constant_environment(glm::vec3(1));
+    const Environment environment = constant_environment(glm::vec3(1));
     PatchScene scene = test::random_crown(500, 5, {glm::vec3(0.6f), glm::vec3(0.4f)});
     const RayQueries queries(scene);
     const PathTracer tracer(queries, environment);
@@ -87,7 +87,7 @@ TEST(PathTracer, ClosedBoxFollowsItsGeometricSeries) {
     for (const float albedo : {0.3f, 0.9f}) {
         const PatchScene scene = closed_box({glm::vec3(albedo), glm::vec3(0)});
         const RayQueries queries(scene);
-        Environment environment = test::constant_environment(glm::vec3(100)); // can't get in
+        Environment environment = constant_environment(glm::vec3(100)); // can't get in
         environment.point_lights.push_back({"lamp", {0.3f, -0.2f, 0.5f}, glm::vec3(2)});
         for (const int bounces : {1, 2, 0}) {
             PathTracerOptions options;
@@ -117,7 +117,7 @@ TEST(PathTracer, ClosedBoxFollowsItsGeometricSeries) {
 /// What a point that faces +Y receives of a constant sky of radiance 1 behind black occluders.
 double open_share(const PatchScene& scene, const glm::vec3& point = glm::vec3(0)) {
     const RayQueries queries(scene);
-    const Environment environment = test::constant_environment(glm::vec3(1));
+    const Environment environment = constant_environment(glm::vec3(1));
     return irradiance(PathTracer(queries, environment), point, {0, 1, 0}).g / kPiDouble;
 }
 
@@ -247,7 +247,7 @@ TEST(PathTracer, GroundReflectsWhatItReceives) {
     PatchScene scene;
     scene.ground = Ground{-0.5f, {0.2f, 0.4f, 0.6f}};
     const RayQueries queries(scene);
-    Environment environment = test::constant_environment(glm::vec3(1));
+    Environment environment = constant_environment(glm::vec3(1));
     add_sun(environment, {3, 4, 0}, glm::vec3(10));
     const PathTracer tracer(queries, environment);
     // The ground's radiosity is albedo x (pi + 8). Downwards a point sees nothing else; sideways it is one half of what
@@ -262,7 +262,7 @@ TEST(PathTracer, NothingArrivesBelowTheGround) {
     PatchScene scene;
     scene.ground = Ground{};
     const RayQueries queries(scene);
-    Environment environment = test::constant_environment(glm::vec3(1));
+    Environment environment = constant_environment(glm::vec3(1));
     add_sun(environment, {0, -1, 0.1f}, glm::vec3(10));
     const PathTracer tracer(queries, environment);
     Random random(1);
@@ -280,7 +280,7 @@ TEST(PathTracer, RoundingPutsNoFloorBelowTheGround) {
     test::add_rectangle(scene, {-9, 1.7f, -9}, {0, 0, 18}, {18, 0, 0});
     scene.ground = Ground{1.7f, glm::vec3(0.2f)};
     const RayQueries queries(scene);
-    const Environment environment = test::constant_environment(glm::vec3(1));
+    const Environment environment = constant_environment(glm::vec3(1));
     const PathTracer tracer(queries, environment);
     expect_near(irradiance(tracer, {0, std::nextafter(1.7f, 0.f), 0}, {0, 1, 0}), glm::dvec3(kPiDouble), 1e-4);
 }
@@ -324,7 +324,7 @@ TEST(PathTracer, ImportanceSamplingChangesNoiseButNotTheMean) {
 }
 
 TEST(PathTracer, RouletteChangesNoiseButNotTheMean) {
-    const Environment environment = test::constant_environment(glm::vec3(1, 2, 3));
+    const Environment environment = constant_environment(glm::vec3(1, 2, 3));
     const PatchScene scene = test::random_crown(400, 4, {{0.3f, 0.5f, 0.1f}, {0.4f, 0.4f, 0.2f}});
     const RayQueries queries(scene);
     PathTracerOptions late;
@@ -340,7 +340,7 @@ TEST(PathTracer, TellsWhatThePathMet) {
     scene.ground = Ground{-1, glm::vec3(0.2f)};
     test::add_rectangle(scene, {-1e4f, 1, 0}, {2e4f, 0, 0}, {0, 0, 1e4f}); // covers the half of the sky with z > 0
     const RayQueries queries(scene);
-    Environment environment = test::constant_environment(glm::vec3(1));
+    Environment environment = constant_environment(glm::vec3(1));
     add_sun(environment, {0, 1, -1}, glm::vec3(3));
     const PathTracer tracer(queries, environment);
     double sky = 0, ground = 0, patch = 0;
@@ -363,7 +363,7 @@ TEST(PathTracer, TellsWhatThePathMet) {
 TEST(PathTracer, CameraSeesDiscsButNoPoints) {
     const PatchScene scene;
     const RayQueries queries(scene);
-    Environment environment = test::constant_environment(glm::vec3(1));
+    Environment environment = constant_environment(glm::vec3(1));
     add_sun(environment, {0, 1, 0}, glm::vec3(2), 0.1f);
     add_sun(environment, {1, 0, 0}, glm::vec3(2));
     const PathTracer tracer(queries, environment);

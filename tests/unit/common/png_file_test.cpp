@@ -86,7 +86,7 @@ Image load_data(const Bytes& png) {
 }
 
 /// What is said about a PNG; empty if it is read. Nothing may be printed beside it.
-std::string complaint(const Bytes& png) {
+std::string png_complaint(const Bytes& png) {
     std::string what;
     testing::internal::CaptureStderr();
     testing::internal::CaptureStdout();
@@ -149,18 +149,18 @@ TEST(PngFile, InterlacedPixelsFindTheirPlace) {
 
 TEST(PngFile, DamageIsToldInOneLine) {
     const Bytes good = good_png();
-    EXPECT_EQ(complaint(good), "");
+    EXPECT_EQ(png_complaint(good), "");
     Bytes damaged = good;
     damaged[good.size() / 2] ^= std::byte(0x10);
-    EXPECT_NE(complaint(damaged).find("its pixels are damaged ("), std::string::npos) << complaint(damaged);
-    EXPECT_NE(complaint(damaged).find("; export"), std::string::npos) << complaint(damaged);
+    EXPECT_NE(png_complaint(damaged).find("its pixels are damaged ("), std::string::npos) << png_complaint(damaged);
+    EXPECT_NE(png_complaint(damaged).find("; export"), std::string::npos) << png_complaint(damaged);
     for (const std::size_t place : {5, 12, 13, 20}) { // signature, IHDR's type, the width
         damaged = good;
         damaged[place] ^= std::byte(0x20);
-        EXPECT_NE(complaint(damaged).find("its header is damaged ("), std::string::npos) << complaint(damaged);
+        EXPECT_NE(png_complaint(damaged).find("its header is damaged ("), std::string::npos) << png_complaint(damaged);
     }
     for (const std::size_t size : {std::size_t(20), good.size() / 2, good.size() - 12, good.size() - 1})
-        EXPECT_NE(complaint({good.begin(), good.begin() + std::ptrdiff_t(size)}).find("it is cut off"),
+        EXPECT_NE(png_complaint({good.begin(), good.begin() + std::ptrdiff_t(size)}).find("it is cut off"),
                   std::string::npos)
             << size;
 }
@@ -174,7 +174,7 @@ TEST(PngFile, WrongPixelsWithRightChecksumsAreToldInOneLine) {
         append_chunk(png, "IEND", {});
         return png;
     };
-    EXPECT_EQ(complaint(with_pixels(stored(bytes_of({0, 7})))), "");
+    EXPECT_EQ(png_complaint(with_pixels(stored(bytes_of({0, 7})))), "");
     const std::vector<std::pair<const char*, Bytes>> wrong = {
         {"no stream of zlib's", bytes_of({1, 2, 3, 4, 5})},
         {"a block of no known type", bytes_of({0x78, 0x01, 0x07, 0, 0})},
@@ -183,8 +183,8 @@ TEST(PngFile, WrongPixelsWithRightChecksumsAreToldInOneLine) {
         {"nothing", {}},
     };
     for (const auto& [what, data] : wrong)
-        EXPECT_NE(complaint(with_pixels(data)).find("its pixels are damaged ("), std::string::npos)
-            << what << ": " << complaint(with_pixels(data));
+        EXPECT_NE(png_complaint(with_pixels(data)).find("its pixels are damaged ("), std::string::npos)
+            << what << ": " << png_complaint(with_pixels(data));
 }
 
 TEST(PngFile, WhatPixelsDoNotNeedMayBeDamaged) {
@@ -197,17 +197,17 @@ TEST(PngFile, WhatPixelsDoNotNeedMayBeDamaged) {
     Bytes profile;
     append_chunk(profile, "iCCP", bytes_of({'x', 0, 0, 1, 2, 3}));
     with_more.insert(with_more.begin() + 33, profile.begin(), profile.end());
-    EXPECT_EQ(complaint(with_more), "");
+    EXPECT_EQ(png_complaint(with_more), "");
     EXPECT_EQ(load_data(with_more).pixels, load_data(good).pixels);
 }
 
 /// Without its transparency a leaf would be a whole card.
 TEST(PngFile, DamagedTransparencyIsRefused) {
     PngParts parts{.color_type = 2, .transparency = bytes_of({0, 1, 0, 2, 0, 3}), .rows = bytes_of({0, 1, 2, 3})};
-    EXPECT_EQ(complaint(png_of(parts)), "");
+    EXPECT_EQ(png_complaint(png_of(parts)), "");
     parts.damaged_transparency = true;
-    EXPECT_NE(complaint(png_of(parts)).find("its header is damaged (tRNS"), std::string::npos)
-        << complaint(png_of(parts));
+    EXPECT_NE(png_complaint(png_of(parts)).find("its header is damaged (tRNS"), std::string::npos)
+        << png_complaint(png_of(parts));
 }
 
 TEST(PngFile, IsKnownByItsBytesWhateverItsName) {

@@ -1,5 +1,6 @@
 #pragma once
 // Small scenes with known answers, shared by the tests of tracing and shading.
+#include "common/environment/analytic_sky.h"
 #include "common/environment/environment.h"
 #include "common/scene/patch_scene.h"
 #include "common/services/random.h"
@@ -53,14 +54,6 @@ inline PatchScene random_crown(std::uint32_t leaves, float area_index, const Opt
         add_rectangle(scene, place + glm::vec3(0, 2, 0) - 0.5f * size * (u + v), size * u, size * v);
     }
     return scene;
-}
-
-inline Environment constant_environment(const glm::vec3& radiance) {
-    Environment environment;
-    environment.remainder = Image(1, 1, 3);
-    for (std::size_t c = 0; c < 3; ++c)
-        environment.remainder.pixels[c] = radiance[c];
-    return environment;
 }
 
 /// A mask whose left half (u < 0.5) is solid.

@@ -226,7 +226,7 @@ TEST(BundlesBounceSweeps, AFurnaceWithAGroundIsOneEverywhere) {
         if (ground)
             scene.ground = Ground{0.3f, glm::vec3(1)};
         const TracedTree tree(scene);
-        const OutsideLight outside = tree.outside(test::constant_environment(glm::vec3(1)));
+        const OutsideLight outside = tree.outside(constant_environment(glm::vec3(1)));
         SweepLimits limits;
         limits.tolerance = 1e-6;
         const SweepResult result =

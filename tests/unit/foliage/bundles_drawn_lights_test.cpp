@@ -32,7 +32,7 @@ TEST(BundlesDrawnLights, PetalsThatNoLineMeetAreAsShadedAsTheirFlower) {
     add_loose_flower(scene, {0, 1, 0});                            // below it
     add_loose_flower(scene, {8, 1, 0});                            // beside it
     const Facets facets = make_facets(scene);
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     DistantLight sun;
     sun.direction = {0, 1, 0};
     sun.irradiance = glm::vec3(1);

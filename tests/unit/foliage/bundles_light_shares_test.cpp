@@ -27,7 +27,7 @@ TEST(BundlesLightShares, AddUpAndDoNotDependOnBrightnessOrResolution) {
         value *= 7;
     EXPECT_LT(moved_light(shares, light_shares(brighter, {0, 1, 0}, false)), 1e-5);
 
-    Environment coarse = test::constant_environment({1, 2, 3}), fine = coarse;
+    Environment coarse = constant_environment({1, 2, 3}), fine = coarse;
     fine.remainder = Image(64, 32, 3);
     for (int y = 0; y < 32; ++y)
         for (int x = 0; x < 64; ++x)
@@ -37,7 +37,7 @@ TEST(BundlesLightShares, AddUpAndDoNotDependOnBrightnessOrResolution) {
 }
 
 TEST(BundlesLightShares, WhatMovedIsCountedOnce) {
-    Environment before = test::constant_environment(glm::vec3(1)), now = before;
+    Environment before = constant_environment(glm::vec3(1)), now = before;
     now.remainder = Image(128, 64, 3);
     std::fill(now.remainder.pixels.begin(), now.remainder.pixels.begin() + 3 * 128 * 32, 1.f); // the upper half
     EXPECT_NEAR(moved_light(light_shares(before, {}, false), light_shares(now, {}, false)), 0.5, 0.01);
@@ -49,7 +49,7 @@ TEST(BundlesLightShares, WhatMovedIsCountedOnce) {
     before.distant_lights.resize(1);
     EXPECT_NEAR(moved_light(light_shares(before, {}, false), light_shares(red, {}, false)), 0.5, 1e-4);
     EXPECT_EQ(moved_light(light_shares(before, {}, true), light_shares(before, {}, false)), 1);
-    Environment dark = test::constant_environment(glm::vec3(0));
+    Environment dark = constant_environment(glm::vec3(0));
     EXPECT_EQ(moved_light(light_shares(dark, {}, false), light_shares(dark, {}, false)), 0);
 }
 

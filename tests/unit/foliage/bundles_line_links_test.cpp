@@ -64,7 +64,7 @@ TEST(BundlesLineLinks, NoFragmentsMakeEmptyLists) {
 }
 
 /// Leaves, and rectangles of bark whose insides lines meet, too.
-PatchScene leaves_and_bark() {
+PatchScene linked_leaves_and_bark() {
     PatchScene scene = test::random_crown(200, 2, test::realistic_leaf());
     for (int i = 0; i < 6; ++i) {
         test::add_rectangle(scene, {0.2f * float(i) - 0.5f, 1, 0.1f * float(i)}, {0.3f, 0, 0.1f * float(i)},
@@ -78,7 +78,7 @@ PatchScene leaves_and_bark() {
 using SidePair = std::pair<std::uint32_t, std::uint32_t>;
 
 TEST(BundlesLineLinks, GroundTexelsAreWhereTheySay) {
-    const Facets facets = make_facets(leaves_and_bark());
+    const Facets facets = make_facets(linked_leaves_and_bark());
     for (const auto& [directions, size] : {std::pair(2, 32), {64, 32}, {256, 64}, {1024, 128}, {20000, 128}}) {
         const GroundGrid grid = make_ground_grid(facets, 0, directions);
         ASSERT_EQ(grid.size, size) << directions;
@@ -93,7 +93,7 @@ TEST(BundlesLineLinks, GroundTexelsAreWhereTheySay) {
 }
 
 TEST(BundlesLineLinks, LinksAreThoseOfASlowWalkAlongTheLines) {
-    const PatchScene scene = leaves_and_bark();
+    const PatchScene scene = linked_leaves_and_bark();
     const Facets facets = make_facets(scene);
     const GroundGrid grid = make_ground_grid(facets, 0, 40);
     const std::uint32_t face_mask = (1u << face_bits(facets)) - 1;

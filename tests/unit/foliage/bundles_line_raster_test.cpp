@@ -199,7 +199,7 @@ void add_tube(PatchScene& scene, const glm::vec3& foot, const glm::vec3& axis, f
     --scene.leaf_count;
 }
 
-PatchScene leaves_and_bark() {
+PatchScene drawn_leaves_and_bark() {
     PatchScene scene = test::random_crown(120, 2, test::realistic_leaf());
     add_tube(scene, {0, 1, 0}, {0.1f, 1.6f, 0.2f}, 0.1f, 6);
     add_tube(scene, {0.2f, 1.5f, 0.1f}, {0.7f, 0.4f, -0.3f}, 0.05f, 5);
@@ -219,12 +219,12 @@ TEST(BundlesLineRaster, LeavesAreDrawnAsByTheTwin) {
 
 TEST(BundlesLineRaster, BarkHasAFaceForEachEndOfTheLine) {
     for (const glm::vec3& direction : kDirections)
-        expect_same_as_twin(leaves_and_bark(), direction, 70);
+        expect_same_as_twin(drawn_leaves_and_bark(), direction, 70);
 }
 
 /// Only the part of it that lines through the rest pass.
 TEST(BundlesLineRaster, AWideFloorIsCutOff) {
-    PatchScene scene = leaves_and_bark();
+    PatchScene scene = drawn_leaves_and_bark();
     test::add_rectangle(scene, {-20, -1, -20}, {0, 0, 40}, {40, 0, 0});
     test::add_rectangle(scene, {-20, -1, 2}, {0, 4, 0}, {40, 0, 0});
     for (std::size_t p = scene.patches.size() - 2; p < scene.patches.size(); ++p)
@@ -280,7 +280,7 @@ TEST(BundlesLineRaster, MasksOfAnySizeAreDrawnWithTheirOwn) {
 
 TEST(BundlesLineRaster, EveryInstructionSetDrawsTheSame) {
     test::with_every_instruction_set([&] {
-        expect_same_as_twin(leaves_and_bark(), kDirections[0], 70);
+        expect_same_as_twin(drawn_leaves_and_bark(), kDirections[0], 70);
         PatchScene cards = test::random_crown(30, 3, test::realistic_leaf());
         test::mask_rectangles(cards, test::half_mask());
         expect_same_as_twin(cards, kDirections[0], 90);

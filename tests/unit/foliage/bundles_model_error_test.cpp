@@ -102,7 +102,7 @@ test::SmallTree leaves_on_a_half_lit_card() {
 }
 
 Environment sun_overhead() {
-    Environment environment = test::constant_environment(glm::vec3(0.1f));
+    Environment environment = constant_environment(glm::vec3(0.1f));
     DistantLight sun;
     sun.direction = {0, 1, 0};
     sun.half_angle = 0.0047f;

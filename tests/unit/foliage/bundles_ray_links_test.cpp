@@ -185,7 +185,7 @@ TEST(BundlesRayLinks, RaysSeeWhatTheSlowTwinSees) {
         const RayLinks& rays = traced.transport.rays;
         ASSERT_EQ(rays.patches.size(), 8u);
         const SkyLight sky = gather_sky(traced.scene, traced.facets, traced.transport,
-                                        test::constant_environment(glm::vec3(1)).remainder, glm::vec3(0));
+                                        constant_environment(glm::vec3(1)).remainder, glm::vec3(0));
         for (std::uint32_t patch : {rays.patches[1], rays.patches[4]})
             for (Side side = 2 * patch; side < 2 * patch + 2; ++side) {
                 constexpr int kSlowRays = 8192;
@@ -230,7 +230,7 @@ TEST(BundlesRayLinks, OtherRowsStayAndAllAreStochastic) {
 
 TEST(BundlesRayLinks, AFurnaceOfTinyAndLargeLeavesIsOneEverywhere) {
     const test::SmallTree small = mixed_ball(500, {{0.5f, 0.9f, 0}, {0.5f, 0.1f, 1}});
-    const Solution solution = shade(small, test::constant_environment(glm::vec3(1)), 20);
+    const Solution solution = shade(small, constant_environment(glm::vec3(1)), 20);
     EXPECT_EQ(count_of(solution, "leaves too small for lines"), 100u);
     for (const auto* side : {&solution.radiance.front, &solution.radiance.back})
         for (const glm::vec3& value : *side)
@@ -249,7 +249,7 @@ test::SmallTree leaf_above_a_card(const Optics& leaf, const Optics& card) {
 
 TEST(BundlesRayLinks, ATinyLeafAboveAWideCardSeesIt) {
     const test::SmallTree pair = leaf_above_a_card(test::realistic_leaf(), {glm::vec3(0.5f), glm::vec3(0)});
-    Environment environment = test::constant_environment({1, 2, 3});
+    Environment environment = constant_environment({1, 2, 3});
     DistantLight sun;
     sun.direction = {0.6f, 0.8f, 0};
     sun.irradiance = {10, 9, 8};
@@ -269,7 +269,7 @@ TEST(BundlesRayLinks, ATinyLeafAboveAWideCardSeesIt) {
 
 TEST(BundlesRayLinks, LightsAddUpAndCastShadowsOnTinyLeaves) {
     const Optics leaf{{0.1f, 0.2f, 0.3f}, glm::vec3(0)};
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     DistantLight window; // two texels of different colours
     window.texels = {{{0.6f, 0.8f, 0}, {4, 0, 1}, 0}, {{0, 0.8f, 0.6f}, {0, 2, 1}, 0}};
     window.direction = glm::normalize(glm::vec3(1, 2, 1));
@@ -306,7 +306,7 @@ TEST(BundlesRayLinks, ALoneTinyLeafNeedsNoRays) {
     test::SmallTree lone;
     lone.scene.optics = {test::grey_leaf(0.5f)};
     test::add_rectangle(lone.scene, {3, 1, 2}, {1e-5f, 0, 0}, {0, 0, 1e-5f});
-    const Solution solution = shade(lone, test::constant_environment(glm::vec3(2)), 20);
+    const Solution solution = shade(lone, constant_environment(glm::vec3(2)), 20);
     EXPECT_EQ(count_of(solution, "leaves too small for lines"), 0u);
     EXPECT_NEAR(solution.radiance.front[0].r, 1, 1e-3);
 }
@@ -385,7 +385,7 @@ TEST(BundlesRayLinks, RelightingTracesOnlyTowardsLightsThatMoved) {
     Environment environment = test::sky_and_sun();
     const std::string name = "light rays from small leaves";
     EXPECT_GT(count_of(transport->solve(environment, silent_progress()), name), 0u);
-    environment.remainder = test::constant_environment({3, 2, 1}).remainder;
+    environment.remainder = constant_environment({3, 2, 1}).remainder;
     environment.distant_lights[0].irradiance = {1, 5, 20};
     const Solution recoloured = transport->solve(environment, silent_progress());
     EXPECT_EQ(count_of(recoloured, name), 0u);

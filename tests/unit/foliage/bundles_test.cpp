@@ -22,7 +22,7 @@ ShadingOptions bundles_options(int directions = 0) {
 
 using test::shade;
 
-double largest_difference(const SideRadiance& a, const SideRadiance& b) {
+double largest_side_difference(const SideRadiance& a, const SideRadiance& b) {
     double difference = 0, largest = 0;
     for (const auto& [x, y] : {std::pair(&a.front, &b.front), std::pair(&a.back, &b.back)})
         for (std::size_t p = 0; p < x->size(); ++p)
@@ -37,7 +37,7 @@ TEST(Bundles, ALoneLeafUnderSunAndSkyIsExact) {
     test::SmallTree lone;
     lone.scene.optics = {test::realistic_leaf()};
     test::add_rectangle(lone.scene, {-1, 1, -1}, {0, 0, 2}, {2, 0, 0}); // front is +Y
-    Environment environment = test::constant_environment({1, 2, 3});
+    Environment environment = constant_environment({1, 2, 3});
     DistantLight sun;
     sun.direction = {0.6f, 0.8f, 0};
     sun.irradiance = {10, 9, 8};
@@ -69,7 +69,7 @@ TEST(Bundles, ASmallLeafSeesTheSkyAboveTheHorizon) {
 TEST(Bundles, AFurnaceIsOneEverywhere) {
     test::SmallTree small = test::ball_on_a_skeleton(2600, 3, {{0.5f, 0.9f, 0}, {0.5f, 0.1f, 1}});
     ShadingOptions options = bundles_options(40);
-    const Solution solution = shade(small, test::constant_environment(glm::vec3(1)), options);
+    const Solution solution = shade(small, constant_environment(glm::vec3(1)), options);
     double mean = 0, largest = 0;
     for (const auto* side : {&solution.radiance.front, &solution.radiance.back})
         for (const glm::vec3& value : *side)
@@ -93,7 +93,7 @@ TEST(Bundles, EnergyBalancesInTheOpen) {
 }
 
 TEST(Bundles, EnergyBalancesInAClosedRoom) {
-    Environment lamp = test::constant_environment(glm::vec3(0));
+    Environment lamp = constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {1.3f, 3.3f, 1.3f}, glm::vec3(1)}}; // not near a wall, whose samples are few
     for (float albedo : {0.5f, 0.9f, 0.99f}) {
         const test::SmallTree room = test::crown_in_a_room(300, test::grey_leaf(albedo));
@@ -134,7 +134,7 @@ test::SmallTree needle_tree() {
 // Steep directions count as much as they should, however few pixels they cover.
 TEST(Bundles, NeedlesSeeTheSkyWithoutBias) {
     const test::SmallTree small = needle_tree();
-    const Environment sky = test::constant_environment(glm::vec3(1));
+    const Environment sky = constant_environment(glm::vec3(1));
     const PathTracedReference reference = path_trace_reference(small.scene, sky, 1024, 1, silent_progress());
     const Solution solution = shade(small, sky, bundles_options(400));
     const Accuracy found =
@@ -206,20 +206,20 @@ TEST(Bundles, RelightingGivesWhatAFreshSolveGives) {
     constexpr double kBrightTolerance = 0.012; // further where light bounces long
 
     environment.distant_lights[0].direction = {0, 1, 0};
-    EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 shade(small, environment, bundles_options(40)).radiance),
+    EXPECT_LT(largest_side_difference(transport->solve(environment, silent_progress()).radiance,
+                                      shade(small, environment, bundles_options(40)).radiance),
               kTolerance);
-    environment.remainder = test::constant_environment({3, 2, 1}).remainder;
+    environment.remainder = constant_environment({3, 2, 1}).remainder;
     environment.distant_lights[0].irradiance = {1, 0, 20};
-    EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 shade(small, environment, bundles_options(40)).radiance),
+    EXPECT_LT(largest_side_difference(transport->solve(environment, silent_progress()).radiance,
+                                      shade(small, environment, bundles_options(40)).radiance),
               kTolerance);
     environment.distant_lights.clear();
     const auto fresh = make_transport(small.scene, small.tree, bundles_options(40), silent_progress());
     for (Transport* repainted : {transport.get(), fresh.get()})
         repainted->set_optics({test::bright_leaf()});
-    EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 fresh->solve(environment, silent_progress()).radiance),
+    EXPECT_LT(largest_side_difference(transport->solve(environment, silent_progress()).radiance,
+                                      fresh->solve(environment, silent_progress()).radiance),
               kBrightTolerance);
 }
 
@@ -230,15 +230,15 @@ TEST(Bundles, ADarkChannelOfALightComesBack) {
     environment.distant_lights[0].irradiance = {5, 5, 0};
     transport->solve(environment, silent_progress());
     environment.distant_lights[0].irradiance = {5, 5, 5};
-    EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 shade(small, environment, bundles_options(20)).radiance),
+    EXPECT_LT(largest_side_difference(transport->solve(environment, silent_progress()).radiance,
+                                      shade(small, environment, bundles_options(20)).radiance),
               0.003);
 }
 
 TEST(Bundles, TheGroundHidesLightsBelowTheHorizon) {
     test::SmallTree small = test::ball_on_a_skeleton(100, 2, test::realistic_leaf());
     small.scene.ground = Ground{};
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     environment.distant_lights = test::sky_and_sun().distant_lights;
     environment.distant_lights[0].direction = glm::normalize(glm::vec3(1, -0.5f, 0));
     environment.point_lights = {{"buried", {0, -1, 0}, glm::vec3(1)}};
@@ -260,8 +260,8 @@ TEST(Bundles, AFaintLightThatGrowsIsDrawnAgain) {
     transport->solve(environment, silent_progress());
     environment.distant_lights[0].irradiance = glm::vec3(0.3f);
     environment.distant_lights[1].irradiance = glm::vec3(10);
-    EXPECT_LT(largest_difference(transport->solve(environment, silent_progress()).radiance,
-                                 shade(small, environment, bundles_options(40)).radiance),
+    EXPECT_LT(largest_side_difference(transport->solve(environment, silent_progress()).radiance,
+                                      shade(small, environment, bundles_options(40)).radiance),
               0.01); // the sun keeps its better raster
 }
 
@@ -294,13 +294,13 @@ void expect_near_truth(const test::SmallTree& small, const Environment& environm
 }
 
 TEST(Bundles, ALampBesideTheCrown) {
-    Environment environment = test::constant_environment(glm::vec3(0.05f));
+    Environment environment = constant_environment(glm::vec3(0.05f));
     environment.point_lights = {{"lamp", {1.2f, 2.3f, 0.2f}, {5, 4, 3}}};
     expect_near_truth(test::ball_on_a_skeleton(300, 3, test::realistic_leaf()), environment, 0.075, 0.02);
 }
 
 TEST(Bundles, SixtyFourLights) {
-    Environment environment = test::constant_environment(glm::vec3(0.1f));
+    Environment environment = constant_environment(glm::vec3(0.1f));
     Random random(9);
     for (int i = 0; i < 64; ++i) {
         DistantLight light;

@@ -29,14 +29,14 @@ test::SmallTree ball_above_a_floor(std::uint32_t leaves, const Optics& leaf, con
     return small;
 }
 
-std::uint64_t count_of(const Solution& solution, const std::string& name) {
+std::uint64_t counted(const Solution& solution, const std::string& name) {
     for (const WorkReport::Count& count : solution.report.counts)
         if (count.name == name)
             return count.value;
     return 0;
 }
 
-Solution shade(const test::SmallTree& small, const Environment& environment, int directions) {
+Solution shade_wide(const test::SmallTree& small, const Environment& environment, int directions) {
     ShadingOptions options;
     options.effort = directions;
     return test::shade(small, environment, options);
@@ -68,19 +68,21 @@ TEST(BundlesWideSurfaces, AreThoseThatLinesWouldMostlyBeDrawnOn) {
 }
 
 TEST(BundlesWideSurfaces, CostLittleMoreThanTheTreeAlone) {
-    const Solution alone = shade(test::ball_on_a_skeleton(2000, 3, test::realistic_leaf()), test::sky_and_sun(), 40);
-    const Solution above = shade(ball_above_a_floor(2000, test::realistic_leaf(), kPaper), test::sky_and_sun(), 40);
-    EXPECT_EQ(count_of(alone, "surfaces too wide for lines"), 0u);
-    EXPECT_EQ(count_of(above, "surfaces too wide for lines"), 4u);
-    EXPECT_EQ(count_of(above, "rays from wide surfaces"), 4u * 8 * 40);
-    EXPECT_LT(count_of(above, "fragments"), 3 * count_of(alone, "fragments")); // all drawn: 60 times
+    const Solution alone =
+        shade_wide(test::ball_on_a_skeleton(2000, 3, test::realistic_leaf()), test::sky_and_sun(), 40);
+    const Solution above =
+        shade_wide(ball_above_a_floor(2000, test::realistic_leaf(), kPaper), test::sky_and_sun(), 40);
+    EXPECT_EQ(counted(alone, "surfaces too wide for lines"), 0u);
+    EXPECT_EQ(counted(above, "surfaces too wide for lines"), 4u);
+    EXPECT_EQ(counted(above, "rays from wide surfaces"), 4u * 8 * 40);
+    EXPECT_LT(counted(above, "fragments"), 3 * counted(alone, "fragments")); // all drawn: 60 times
 }
 
 TEST(BundlesWideSurfaces, LeavesAboveAFloorComeNearTheTruth) {
     const test::SmallTree small = ball_above_a_floor(500, test::realistic_leaf(), kPaper);
     const Environment environment = test::sky_and_sun();
     const PathTracedReference reference = path_trace_reference(small.scene, environment, 1024, 1, silent_progress());
-    const Solution solution = shade(small, environment, 160);
+    const Solution solution = shade_wide(small, environment, 160);
     const double error = error_of(small.scene, solution, reference);
     // A ball of 2 m hides next to nothing from pieces of 20 m.
     const DistantLight& sun = environment.distant_lights[0];
@@ -96,8 +98,8 @@ TEST(BundlesWideSurfaces, LeavesAboveAFloorComeNearTheTruth) {
 TEST(BundlesWideSurfaces, AFurnaceIsOneEverywhere) {
     const test::SmallTree small =
         ball_above_a_floor(300, {glm::vec3(0.5f), glm::vec3(0.5f)}, {glm::vec3(1), glm::vec3(0)});
-    const Solution solution = shade(small, test::constant_environment(glm::vec3(1)), 20);
-    ASSERT_EQ(count_of(solution, "surfaces too wide for lines"), 4u);
+    const Solution solution = shade_wide(small, constant_environment(glm::vec3(1)), 20);
+    ASSERT_EQ(counted(solution, "surfaces too wide for lines"), 4u);
     for (const auto* side : {&solution.radiance.front, &solution.radiance.back})
         for (const glm::vec3& value : *side)
             for (std::size_t c = 0; c < 3; ++c)
@@ -106,7 +108,7 @@ TEST(BundlesWideSurfaces, AFurnaceIsOneEverywhere) {
 
 /// A disc that alone gives light.
 Environment lamp(float half_angle) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     DistantLight light;
     light.direction = glm::normalize(glm::vec3(1, 2, 0.5f));
     light.half_angle = half_angle;
@@ -136,7 +138,7 @@ TEST(BundlesWideLights, ComeNearTheTruth) {
     const test::SmallTree small = test::ball_on_a_skeleton(1000, 3, test::realistic_leaf());
     const Environment environment = lamp(0.4f);
     const PathTracedReference reference = path_trace_reference(small.scene, environment, 1024, 1, silent_progress());
-    const Solution solution = shade(small, environment, 80);
+    const Solution solution = shade_wide(small, environment, 80);
     const double error = error_of(small.scene, solution, reference);
     EXPECT_LT(error, 0.1); // by two beams: 21 %
     EXPECT_LT(*solution.estimated_error / error, 1.5);

@@ -86,7 +86,7 @@ TEST(CellMeans, PutAPixelWhereItsDirectionIs) {
 
 TEST(CellMeans, OfAConstantAreThatConstant) {
     const CaptureDirections set = make_capture_directions(1, 968);
-    const Environment constant = test::constant_environment({0.25f, 1, 4});
+    const Environment constant = constant_environment({0.25f, 1, 4});
     for (const glm::vec3& mean : cell_means(set, constant.remainder))
         EXPECT_LT(glm::distance(mean, glm::vec3(0.25f, 1, 4)), 1e-5f);
 }

@@ -45,7 +45,7 @@ TEST(CapturedMaps, OfAConstantSkyAreConstant) {
     const RayQueries queries(empty);
     const CapturedMaps maps(queries, {}, place_at({1, 2, 3}), 7, 968, silent_progress());
     MapCoefficients map(1, 7);
-    maps.add_sky(cell_means(maps.directions(), test::constant_environment({0.5f, 1, 2}).remainder), map);
+    maps.add_sky(cell_means(maps.directions(), constant_environment({0.5f, 1, 2}).remainder), map);
     expect_constant(map, {0.5f, 1, 2});
 }
 
@@ -54,7 +54,7 @@ TEST(CapturedMaps, InAClosedRoomSeeItsWallsAndNoSky) {
     const RayQueries queries(room);
     const CapturedMaps maps(queries, {}, place_at({0.3f, -0.2f, 0.1f}), 7, 968, silent_progress());
     MapCoefficients map(1, 7);
-    maps.add_sky(cell_means(maps.directions(), test::constant_environment(glm::vec3(100)).remainder), map);
+    maps.add_sky(cell_means(maps.directions(), constant_environment(glm::vec3(100)).remainder), map);
     maps.add_surfaces(uniform_sides(6, {1, 2, 3}, {9, 9, 9}), {}, map);
     expect_constant(map, {1, 2, 3});
 }

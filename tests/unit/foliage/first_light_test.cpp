@@ -11,11 +11,11 @@
 namespace kokage {
 namespace {
 
-constexpr int kDirections = 256;
+constexpr int kDirectionCount = 256;
 
 /// With what it was made from.
-struct Traced {
-    explicit Traced(const PatchScene& patches, int directions = kDirections, std::uint64_t seed = 1)
+struct TracedLight {
+    explicit TracedLight(const PatchScene& patches, int directions = kDirectionCount, std::uint64_t seed = 1)
         : scene(patches), grid(make_ground_cells(scene)),
           light(scene, grid, directions, seed, silent_progress(), report) {}
     FirstLight of(const Environment& environment) {
@@ -43,7 +43,7 @@ PatchScene leaf_at(const glm::vec3& centre) {
 }
 
 TEST(FirstLight, OfAConstantSkyIsPiTimesIt) {
-    const FirstLight light = Traced(leaf_at({0, 1, 0})).of(test::constant_environment({1, 2, 3}));
+    const FirstLight light = TracedLight(leaf_at({0, 1, 0})).of(constant_environment({1, 2, 3}));
     EXPECT_LT(glm::distance(light.sky.front[0], kPi * glm::vec3(1, 2, 3)), 1e-4f);
     EXPECT_LT(glm::distance(light.sky.back[0], kPi * glm::vec3(1, 2, 3)), 1e-4f);
     EXPECT_NEAR(light.open_front[0], 1, 1e-6);
@@ -58,31 +58,31 @@ TEST(FirstLight, WeighsTheSkyByTheCosine) {
     for (int y = 0; y < 256; ++y)
         for (int x = 0; x < 64; ++x)
             environment.remainder.at(x, y)[0] = 1 + std::cos(kPi * (float(y) + 0.5f) / 256);
-    const FirstLight light = Traced(leaf_at({0, 1, 0}), 1024).of(environment);
+    const FirstLight light = TracedLight(leaf_at({0, 1, 0}), 1024).of(environment);
     EXPECT_NEAR(light.sky.front[0].r, kPi * 5 / 3, 0.05f);
     EXPECT_NEAR(light.sky.back[0].r, kPi / 3, 0.05f);
 }
 
 TEST(FirstLight, OfTheSunIsIrradianceTimesCosineWhereItIsSeen) {
     PatchScene scene = leaf_at({0, 1, 0});
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     DistantLight sun;
     sun.direction = {0.6f, 0.8f, 0};
     sun.irradiance = {5, 4, 3};
     environment.distant_lights = {sun};
-    FirstLight light = Traced(scene).of(environment);
+    FirstLight light = TracedLight(scene).of(environment);
     EXPECT_LT(glm::distance(light.lights.front[0], 0.8f * sun.irradiance), 1e-3f);
     EXPECT_EQ(light.lights.back[0], glm::vec3(0));
     test::add_rectangle(scene, {-1, 2, -1}, {2, 0, 0}, {0, 0, 2}); // a roof, beside which the leaf is tiny
-    light = Traced(scene).of(environment);
+    light = TracedLight(scene).of(environment);
     EXPECT_EQ(light.lights.front[0], glm::vec3(0));
     EXPECT_GT(light.lights.back[1].r, 0) << "the roof's upper side is its back";
 }
 
 TEST(FirstLight, OfALampFallsWithTheSquareOfItsDistance) {
-    Environment environment = test::constant_environment(glm::vec3(0));
+    Environment environment = constant_environment(glm::vec3(0));
     environment.point_lights = {{"lamp", {0, -4, 3}, glm::vec3(50)}}; // 5 below and 3 beside a leaf at height 1
-    const FirstLight light = Traced(leaf_at({0, 1, 0})).of(environment);
+    const FirstLight light = TracedLight(leaf_at({0, 1, 0})).of(environment);
     EXPECT_NEAR(light.lights.back[0].g, 50.f / 34 * 5 / std::sqrt(34.f), 2e-3f);
     EXPECT_EQ(light.lights.front[0], glm::vec3(0));
 }
@@ -92,9 +92,9 @@ TEST(FirstLight, KnowsSkyGroundAndPatchesApart) {
     PatchScene scene = leaf_at({0, 1, 0});
     scene.ground = Ground{0, glm::vec3(0.5f)};
     test::add_rectangle(scene, {0, 2, -1000}, {1000, 0, 0}, {0, 0, 2000}); // hides the sky's half with x > 0, nearly
-    Traced traced(scene, 1024);
+    TracedLight traced(scene, 1024);
     ASSERT_EQ(traced.light.bent_normals().size(), 2u);
-    const FirstLight light = traced.of(test::constant_environment(glm::vec3(1)));
+    const FirstLight light = traced.of(constant_environment(glm::vec3(1)));
     std::vector<float> front, back;
     traced.light.filled_shares(front, back);
     EXPECT_NEAR(light.open_front[0], 0.5f, 0.03f);
@@ -117,7 +117,7 @@ TEST(FirstLight, OfBarkFallsOnItsFrontAlone) {
     PatchScene scene = leaf_at({0, 1, 0});
     scene.patches[0].kind = PatchKind::bark;
     scene.leaf_count = 0;
-    Traced traced(scene);
+    TracedLight traced(scene);
     const FirstLight light = traced.of(test::sky_and_sun());
     EXPECT_GT(light.sky.front[0].r, 0);
     EXPECT_EQ(light.sky.back[0], glm::vec3(0));
@@ -128,7 +128,7 @@ TEST(FirstLight, OfBarkFallsOnItsFrontAlone) {
 }
 
 TEST(FirstLight, DrawsOnlyLightsThatMoved) {
-    Traced traced(test::ball_on_a_skeleton(300, 2, test::realistic_leaf()).scene, 16);
+    TracedLight traced(test::ball_on_a_skeleton(300, 2, test::realistic_leaf()).scene, 16);
     Environment environment = test::sky_and_sun();
     const FirstLight before = traced.of(environment);
     EXPECT_GT(traced.count_of("light rasters"), 0u);
@@ -147,11 +147,11 @@ TEST(FirstLight, DoesNotDependOnThreads) {
     scene.ground = Ground{0, glm::vec3(0.5f)};
     const auto radiance = [](const GroundCells& grid) { return std::vector<glm::vec3>(grid.size(), glm::vec3(1)); };
     set_thread_count(1);
-    Traced one(scene, 16);
+    TracedLight one(scene, 16);
     const FirstLight first = one.of(test::sky_and_sun());
     const SideIrradiance ground = one.light.from_ground(radiance(one.grid));
     set_thread_count(2);
-    Traced two(scene, 16);
+    TracedLight two(scene, 16);
     const FirstLight second = two.of(test::sky_and_sun());
     EXPECT_EQ(ground.back, two.light.from_ground(radiance(two.grid)).back);
     set_thread_count(0);
@@ -232,7 +232,7 @@ TEST(FirstLight, IsThatOfRaysFromEveryPatch) {
             corner = fixed + (corner - fixed) / 6.f;
         }
     scene.ground = Ground{0.5f, glm::vec3(0.5f)};
-    Traced traced(scene, 512);
+    TracedLight traced(scene, 512);
     traced.light.count(traced.report);
     ASSERT_GT(traced.count_of("rays from small leaves"), 0u);
     std::vector<glm::vec3> ground_radiance;

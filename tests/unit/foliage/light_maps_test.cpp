@@ -18,7 +18,7 @@ ShadingOptions light_maps_options(GatherRule gather = GatherRule::cosine) {
 }
 
 using test::shade;
-Solution shade(const test::SmallTree& small, const Environment& environment) {
+Solution shade_by_light_maps(const test::SmallTree& small, const Environment& environment) {
     return shade(small, environment, light_maps_options());
 }
 
@@ -30,7 +30,7 @@ TEST(LightMaps, ALoneLeafUnderAConstantSkyIsExact) {
     lone.scene.optics = {test::realistic_leaf()};
     test::add_rectangle(lone.scene, {0, 1, 0}, {1, 0, 0}, {0, 0, 1});
     lone.tree.leaves = {{{0.5f, 1, 0.5f}, -1}};
-    const Solution solution = shade(lone, test::constant_environment({1, 2, 4}));
+    const Solution solution = shade_by_light_maps(lone, constant_environment({1, 2, 4}));
     const glm::vec3 expected = glm::vec3(1, 2, 4) * glm::vec3(0.18f, 0.5f, 0.1f);
     EXPECT_LT(glm::distance(solution.radiance.front[0], expected), 1e-4f);
     EXPECT_LT(glm::distance(solution.radiance.back[0], expected), 1e-4f);
@@ -42,9 +42,9 @@ TEST(LightMaps, ALoneLeafUnderALampIsExact) {
     lone.scene.optics = {test::realistic_leaf()};
     test::add_rectangle(lone.scene, {-5e-4f, 0, -5e-4f}, {1e-3f, 0, 0}, {0, 0, 1e-3f}); // front downwards
     lone.tree.leaves = {{{0, 0, 0}, -1}};
-    Environment lamp = test::constant_environment(glm::vec3(0));
+    Environment lamp = constant_environment(glm::vec3(0));
     lamp.point_lights = {{"lamp", {3, -4, 0}, glm::vec3(50)}};
-    const Solution solution = shade(lone, lamp);
+    const Solution solution = shade_by_light_maps(lone, lamp);
     const glm::vec3 irradiance(50.f / 25 * 0.8f); // cosine 4/5 on the front
     EXPECT_LT(glm::distance(solution.radiance.front[0], irradiance * test::realistic_leaf().reflectance / kPi), 1e-3f);
     EXPECT_LT(glm::distance(solution.radiance.back[0], irradiance * test::realistic_leaf().transmittance / kPi), 1e-3f);
@@ -56,7 +56,7 @@ TEST_P(LightMapsGather, EnergyBalancesInTheOpen) {
         const test::SmallTree small = test::ball_on_a_skeleton(2000, 2, test::grey_leaf(albedo));
         ShadingOptions options = light_maps_options(GetParam());
         options.error = 0.001;
-        const Solution solution = shade(small, test::constant_environment(glm::vec3(1)), options);
+        const Solution solution = shade(small, constant_environment(glm::vec3(1)), options);
         const double balance = (solution.energy_absorbed + solution.energy_escaped) / solution.energy_in;
         // Maps are no exact operator: what they pass on is off by a few percent (README). Stored: a change means
         // another operator.
@@ -72,7 +72,7 @@ TEST_P(LightMapsGather, SaysThatNothingAbsorbs) {
     };
     const test::SmallTree small = test::ball_on_a_skeleton(200, 1, test::grey_leaf(1));
     EXPECT_TRUE(says(shade(small, test::sky_and_sun(), light_maps_options(GetParam()))));
-    EXPECT_FALSE(says(shade(test::ball_on_a_skeleton(200, 1, test::bright_leaf()), test::sky_and_sun())));
+    EXPECT_FALSE(says(shade_by_light_maps(test::ball_on_a_skeleton(200, 1, test::bright_leaf()), test::sky_and_sun())));
 }
 
 TEST_P(LightMapsGather, RelightingGivesTheBitsOfAFreshSolve) {
@@ -81,7 +81,7 @@ TEST_P(LightMapsGather, RelightingGivesTheBitsOfAFreshSolve) {
     const auto transport =
         make_light_maps_transport(small.scene, small.tree, light_maps_options(GetParam()), silent_progress());
     transport->solve(environment, silent_progress());
-    environment.remainder = test::constant_environment(glm::vec3(3)).remainder;
+    environment.remainder = constant_environment(glm::vec3(3)).remainder;
     environment.distant_lights[0].direction = {0, 1, 0};
     transport->set_optics({test::bright_leaf()});
     const Solution relit = transport->solve(environment, silent_progress());
@@ -111,9 +111,9 @@ TEST_P(LightMapsGather, NothingIsFine) {
 TEST(LightMaps, GroundSendsLightUp) {
     test::SmallTree small = test::ball_on_a_skeleton(300, 1, test::realistic_leaf());
     const Environment upper = test::upper_sky_and_sun();
-    const Solution without = shade(small, upper);
+    const Solution without = shade_by_light_maps(small, upper);
     small.scene.ground = Ground{0, glm::vec3(0.5f)};
-    const Solution with = shade(small, upper);
+    const Solution with = shade_by_light_maps(small, upper);
     EXPECT_GT(with.energy_absorbed, 1.1 * without.energy_absorbed);
     EXPECT_NEAR((with.energy_absorbed + with.energy_escaped) / with.energy_in, 1, 0.02);
 }

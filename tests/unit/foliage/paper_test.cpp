@@ -19,11 +19,11 @@ ShadingOptions paper_options() {
 }
 
 using test::shade;
-Solution shade(const test::SmallTree& small, const Environment& environment) {
+Solution shade_by_paper(const test::SmallTree& small, const Environment& environment) {
     return shade(small, environment, paper_options());
 }
 
-std::uint64_t count_of(const Solution& solution, const std::string& name) {
+std::uint64_t reported(const Solution& solution, const std::string& name) {
     for (const WorkReport::Count& count : solution.report.counts)
         if (count.name == name)
             return count.value;
@@ -38,7 +38,7 @@ TEST(Paper, ALoneLeafFarFromEverythingTakesRhoPlusTauOfTheSky) {
     test::add_branch(lone.tree.skeleton, -1, {0, 0, 0}, {0, 1, 0});
     test::add_branch(lone.tree.skeleton, 0, {0, 1, 0}, {0, 2, 0});
     lone.tree.leaves = {{{0, 100, 0}, 1}};
-    const Solution solution = shade(lone, test::constant_environment({1, 2, 4}));
+    const Solution solution = shade_by_paper(lone, constant_environment({1, 2, 4}));
     const glm::vec3 expected = glm::vec3(1, 2, 4) * glm::vec3(0.18f, 0.5f, 0.1f);
     EXPECT_LT(glm::distance(solution.radiance.front[0], expected), 1e-4f);
     EXPECT_EQ(solution.radiance.back[0], solution.radiance.front[0]) << "no cosine, both sides alike";
@@ -51,12 +51,13 @@ TEST(Paper, BarkTakesItsAlbedo) {
     small.scene.patches[0].kind = PatchKind::bark;
     test::add_branch(small.tree.skeleton, -1, {0, 0, 0}, {0, 1, 0});
     test::add_branch(small.tree.skeleton, 0, {0, 1, 0}, {0, 2, 0});
-    const Solution solution = shade(small, test::constant_environment(glm::vec3(1)));
+    const Solution solution = shade_by_paper(small, constant_environment(glm::vec3(1)));
     EXPECT_NEAR(solution.radiance.front[0].r, 0.3f, 1e-5f);
 }
 
 TEST(Paper, UsesFifteenMapsOfFortyNineCoefficients) {
-    const Solution solution = shade(test::ball_on_a_skeleton(400, 2, test::realistic_leaf()), test::sky_and_sun());
+    const Solution solution =
+        shade_by_paper(test::ball_on_a_skeleton(400, 2, test::realistic_leaf()), test::sky_and_sun());
     ASSERT_EQ(solution.light_maps.size(), 15u);
     for (const LightMap& map : solution.light_maps)
         EXPECT_EQ(map.coefficients.size(), 49u);
@@ -111,15 +112,16 @@ TEST(Paper, RelightingTracesOnlyWhatMoved) {
     const test::SmallTree small = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
     Environment environment = test::sky_and_sun();
     const auto transport = make_paper_transport(small.scene, small.tree, paper_options(), silent_progress());
-    const std::uint64_t rays = count_of(transport->solve(environment, silent_progress()), "rays");
-    environment.remainder = test::constant_environment(glm::vec3(3)).remainder;
+    const std::uint64_t rays = reported(transport->solve(environment, silent_progress()), "rays");
+    environment.remainder = constant_environment(glm::vec3(3)).remainder;
     const Solution relit = transport->solve(environment, silent_progress());
-    EXPECT_EQ(count_of(relit, "rays"), rays);
-    EXPECT_EQ(relit.radiance.front, shade(small, environment).radiance.front) << "the same bits as a fresh solve";
+    EXPECT_EQ(reported(relit, "rays"), rays);
+    EXPECT_EQ(relit.radiance.front, shade_by_paper(small, environment).radiance.front)
+        << "the same bits as a fresh solve";
     environment.distant_lights[0].direction = {0, 1, 0};
     const Solution moved = transport->solve(environment, silent_progress());
-    EXPECT_EQ(count_of(moved, "rays"), rays + 15 * 16);
-    EXPECT_EQ(moved.radiance.front, shade(small, environment).radiance.front);
+    EXPECT_EQ(reported(moved, "rays"), rays + 15 * 16);
+    EXPECT_EQ(moved.radiance.front, shade_by_paper(small, environment).radiance.front);
 }
 
 TEST(Paper, ChangedOpticsNeedNoNewTransport) {
@@ -128,20 +130,20 @@ TEST(Paper, ChangedOpticsNeedNoNewTransport) {
     transport->set_optics({test::bright_leaf()});
     const Solution changed = transport->solve(test::sky_and_sun(), silent_progress());
     small.scene.optics = {test::bright_leaf()};
-    EXPECT_EQ(changed.radiance.front, shade(small, test::sky_and_sun()).radiance.front);
+    EXPECT_EQ(changed.radiance.front, shade_by_paper(small, test::sky_and_sun()).radiance.front);
 }
 
 TEST(Paper, IndirectLeavesOutTheUnscatteredSun) {
     const test::SmallTree small = test::ball_on_a_skeleton(300, 2, test::realistic_leaf());
     Environment sun_only = test::sky_and_sun();
-    sun_only.remainder = test::constant_environment(glm::vec3(0)).remainder;
+    sun_only.remainder = constant_environment(glm::vec3(0)).remainder;
     test::SmallTree black = small;
     black.scene.optics = {
         Optics{glm::vec3(1e-9f), glm::vec3(0)}}; // sends on a little of what arrives first, next to nothing of the rest
-    const Solution solution = shade(black, sun_only);
+    const Solution solution = shade_by_paper(black, sun_only);
     for (std::size_t p = 0; p < solution.indirect.front.size(); ++p)
         EXPECT_LE(glm::length(solution.indirect.front[p]), 1e-6f * glm::length(solution.radiance.front[p]) + 1e-15f);
-    const Solution no_sun = shade(small, test::constant_environment(glm::vec3(1)));
+    const Solution no_sun = shade_by_paper(small, constant_environment(glm::vec3(1)));
     for (std::size_t p = 0; p < no_sun.indirect.front.size(); ++p)
         EXPECT_EQ(no_sun.indirect.front[p], no_sun.radiance.front[p]);
 }
@@ -149,9 +151,9 @@ TEST(Paper, IndirectLeavesOutTheUnscatteredSun) {
 TEST(Paper, DoesNotDependOnThreads) {
     const test::SmallTree small = test::ball_on_a_skeleton(800, 2, test::realistic_leaf());
     set_thread_count(1);
-    const Solution one = shade(small, test::sky_and_sun());
+    const Solution one = shade_by_paper(small, test::sky_and_sun());
     set_thread_count(2);
-    const Solution two = shade(small, test::sky_and_sun());
+    const Solution two = shade_by_paper(small, test::sky_and_sun());
     set_thread_count(0);
     EXPECT_EQ(one.radiance.front, two.radiance.front);
     EXPECT_EQ(one.residuals, two.residuals);
@@ -160,7 +162,7 @@ TEST(Paper, DoesNotDependOnThreads) {
 
 TEST(Paper, NothingAndOneLeafAndNoBranchingAreFine) {
     test::SmallTree nothing;
-    const Solution empty = shade(nothing, test::sky_and_sun());
+    const Solution empty = shade_by_paper(nothing, test::sky_and_sun());
     EXPECT_TRUE(empty.radiance.front.empty());
     EXPECT_EQ(empty.residuals, std::vector<double>{0});
 
@@ -168,7 +170,7 @@ TEST(Paper, NothingAndOneLeafAndNoBranchingAreFine) {
     one.scene.optics = {test::realistic_leaf()};
     test::add_rectangle(one.scene, {0, 1, 0}, {0.1f, 0, 0}, {0, 0, 0.1f});
     one.tree.leaves = {{{0.05f, 1, 0.05f}, -1}}; // unknown branch: the only map stands exactly at the leaf
-    const Solution lone = shade(one, test::sky_and_sun());
+    const Solution lone = shade_by_paper(one, test::sky_and_sun());
     test::expect_finite(lone);
     EXPECT_GT(lone.radiance.front[0].g, 0);
     EXPECT_TRUE(std::any_of(lone.report.warnings.begin(), lone.report.warnings.end(), [](const std::string& text) {
@@ -179,9 +181,9 @@ TEST(Paper, NothingAndOneLeafAndNoBranchingAreFine) {
 TEST(Paper, GroundLightsTheCrownFromBelow) {
     test::SmallTree small = test::ball_on_a_skeleton(300, 1, test::realistic_leaf());
     const Environment upper = test::upper_sky_and_sun();
-    const Solution without = shade(small, upper);
+    const Solution without = shade_by_paper(small, upper);
     small.scene.ground = Ground{0, glm::vec3(0.5f)};
-    const Solution with = shade(small, upper);
+    const Solution with = shade_by_paper(small, upper);
     double sum_without = 0, sum_with = 0;
     for (std::size_t p = 0; p < small.scene.patches.size(); ++p) {
         sum_without += without.radiance.front[p].g;

@@ -23,8 +23,8 @@ struct EvenWorld {
     LightMapsOfPatches maps(const std::vector<std::uint8_t>& readers) {
         report = {};
         const RayQueries queries(small.scene);
-        return make_patch_light_maps(queries, small.tree, readers, test::constant_environment(glm::vec3(1.f)), radiance,
-                                     {}, silent_progress(), report);
+        return make_patch_light_maps(queries, small.tree, readers, constant_environment(glm::vec3(1.f)), radiance, {},
+                                     silent_progress(), report);
     }
     std::vector<std::uint8_t> all() const { return std::vector<std::uint8_t>(small.scene.patches.size(), 1); }
     std::uint64_t captured() const { return report.counts.empty() ? 0 : report.counts.front().value; }

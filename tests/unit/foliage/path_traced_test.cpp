@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-Solution shade(const PatchScene& scene, const Environment& environment, int effort, std::uint64_t seed = 1) {
+Solution shade_by_paths(const PatchScene& scene, const Environment& environment, int effort, std::uint64_t seed = 1) {
     ShadingOptions options;
     options.method = Method::path_traced;
     options.effort = effort;
@@ -36,12 +36,12 @@ TEST(PathTraced, LoneLeafUnderSunAndSkyIsAnalytic) {
     PatchScene scene;
     scene.optics = {{{0.1f, 0.2f, 0.3f}, {0.4f, 0.3f, 0.2f}}};
     test::add_rectangle(scene, {-1, 1, -1}, {0, 0, 2}, {2, 0, 0}); // front is +Y
-    Environment environment = test::constant_environment({1, 2, 3});
+    Environment environment = constant_environment({1, 2, 3});
     DistantLight sun;
     sun.direction = {0.6f, 0.8f, 0};
     sun.irradiance = {10, 9, 8};
     environment.distant_lights.push_back(sun);
-    const Solution solution = shade(scene, environment, 32);
+    const Solution solution = shade_by_paths(scene, environment, 32);
     const glm::vec3 sky = kPi * glm::vec3(1, 2, 3), direct = 0.8f * sun.irradiance;
     const glm::vec3 rho = scene.optics[0].reflectance, tau = scene.optics[0].transmittance;
     expect_near(solution.radiance.front[0], (rho * (sky + direct) + tau * sky) / kPi, 1e-4f);
@@ -61,7 +61,7 @@ TEST(PathTraced, SkyVisibilityAndBentNormal) {
     test::add_rectangle(scene, {0, 1, 0}, {0, 0.1f, 0}, {0, 0, 0.1f});  // upright, over a ground
     test::add_rectangle(scene, {50, 1, 0}, {0, 0, 0.1f}, {0.1f, 0, 0}); // front is +Y
     scene.ground = Ground{0, glm::vec3(0)};
-    const Solution solution = shade(scene, test::constant_environment(glm::vec3(1)), 4096);
+    const Solution solution = shade_by_paths(scene, constant_environment(glm::vec3(1)), 4096);
     EXPECT_NEAR(solution.sky_visibility_front[0], 0.5, 0.005);
     EXPECT_NEAR(solution.sky_visibility_back[0], 0.5, 0.005);
     EXPECT_NEAR(solution.sky_visibility_front[1], 1, 1e-6);
@@ -79,12 +79,12 @@ TEST(PathTraced, EstimatedErrorIsHonest) {
     };
     std::vector<Case> cases;
     cases.push_back({"realistic", test::random_crown(150, 3.5f, test::realistic_leaf()), test::sky_and_sun()});
-    cases.push_back({"bright, constant sky", test::random_crown(150, 3.5f, test::bright_leaf()),
-                     test::constant_environment({1, 2, 3})});
+    cases.push_back(
+        {"bright, constant sky", test::random_crown(150, 3.5f, test::bright_leaf()), constant_environment({1, 2, 3})});
     cases.push_back({"masked", test::random_crown(150, 5, test::realistic_leaf()), test::sky_and_sun()});
     test::mask_rectangles(cases.back().scene, test::checkered_mask(4));
-    cases.push_back({"lamps beside", test::random_crown(150, 3.5f, test::bright_leaf()),
-                     test::constant_environment(glm::vec3(0.1f))});
+    cases.push_back(
+        {"lamps beside", test::random_crown(150, 3.5f, test::bright_leaf()), constant_environment(glm::vec3(0.1f))});
     for (int i = 0; i < 3; ++i)
         cases.back().environment.point_lights.push_back(
             {"", {1.3f, 1.5f + 0.5f * float(i), 0.1f}, glm::vec3(1, 0.8f, 0.5f)});
@@ -92,7 +92,7 @@ TEST(PathTraced, EstimatedErrorIsHonest) {
         std::vector<double> areas(c.scene.leaf_count, 1.0);
         const PathTracedReference reference = path_trace_reference(c.scene, c.environment, 4096, 77, silent_progress());
         for (const int effort : {4, 16, 64}) {
-            const Solution solution = shade(c.scene, c.environment, effort);
+            const Solution solution = shade_by_paths(c.scene, c.environment, effort);
             const double mre = accuracy(leaf_side_radiance(c.scene, solution.radiance), reference.sides, areas).mre;
             ASSERT_LT(reference.noise, mre / 5) << c.name;
             ASSERT_TRUE(solution.estimated_error);
@@ -125,9 +125,9 @@ TEST(PathTraced, SameBitsForAnyNumberOfThreads) {
     const PatchScene scene = test::random_crown(300, 3.5f, test::bright_leaf());
     const Environment environment = test::sky_and_sun();
     set_thread_count(1);
-    const Solution one = shade(scene, environment, 6);
+    const Solution one = shade_by_paths(scene, environment, 6);
     set_thread_count(3);
-    const Solution three = shade(scene, environment, 6);
+    const Solution three = shade_by_paths(scene, environment, 6);
     set_thread_count(0);
     EXPECT_EQ(one.radiance.front, three.radiance.front);
     EXPECT_EQ(one.radiance.back, three.radiance.back);
@@ -135,13 +135,14 @@ TEST(PathTraced, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(one.bent_normal, three.bent_normal);
     EXPECT_EQ(one.energy_escaped, three.energy_escaped);
     EXPECT_EQ(*one.estimated_error, *three.estimated_error);
-    EXPECT_NE(shade(scene, environment, 6, 2).radiance.front, one.radiance.front) << "another seed, other noise";
+    EXPECT_NE(shade_by_paths(scene, environment, 6, 2).radiance.front, one.radiance.front)
+        << "another seed, other noise";
 }
 
 TEST(PathTraced, EnergyBalancesAtEveryAlbedo) {
     for (const float albedo : {0.5f, 0.9f, 0.99f, 1.f}) {
         PatchScene scene = test::random_crown(400, 3.5f, test::grey_leaf(albedo));
-        const Solution solution = shade(scene, test::sky_and_sun(), 64);
+        const Solution solution = shade_by_paths(scene, test::sky_and_sun(), 64);
         EXPECT_NEAR((solution.energy_absorbed + solution.energy_escaped) / solution.energy_in, 1, 0.01) << albedo;
         EXPECT_LT(solution.energy_absorbed, solution.energy_in * 1.01);
         if (albedo == 1) {
@@ -152,7 +153,7 @@ TEST(PathTraced, EnergyBalancesAtEveryAlbedo) {
 
 TEST(PathTraced, FurnaceAtAlbedoOne) {
     const PatchScene scene = test::random_crown(300, 4, test::grey_leaf(1));
-    const Solution solution = shade(scene, test::constant_environment(glm::vec3(1)), 512);
+    const Solution solution = shade_by_paths(scene, constant_environment(glm::vec3(1)), 512);
     double mean = 0;
     for (std::size_t p = 0; p < scene.patches.size(); ++p) {
         mean += 0.5 * double(solution.radiance.front[p].g + solution.radiance.back[p].g) / double(scene.patches.size());
@@ -173,7 +174,7 @@ TEST(PathTraced, OpticsChangeWithoutTouchingTheScene) {
     transport->set_optics({test::realistic_leaf()});
     EXPECT_EQ(transport->solve(environment, silent_progress()).radiance.front, before.radiance.front);
     scene.optics = {test::bright_leaf()};
-    EXPECT_EQ(shade(scene, environment, 8).radiance.front, bright.radiance.front);
+    EXPECT_EQ(shade_by_paths(scene, environment, 8).radiance.front, bright.radiance.front);
     EXPECT_THROW(transport->set_optics({}), InputError);
     EXPECT_GT(transport->bytes(), 1000u);
 }
@@ -189,17 +190,18 @@ TEST(PathTraced, PathsAreSharedAmongPartsOfALeaf) {
     parts.leaf_count = 1;
     parts.ground = Ground{};
     const Environment environment = test::sky_and_sun();
-    const Solution solution = shade(parts, environment, 4000);
+    const Solution solution = shade_by_paths(parts, environment, 4000);
     EXPECT_EQ(count(solution, "paths"), 8000u);
     PatchScene whole;
     whole.optics = parts.optics;
     test::add_rectangle(whole, {0, 1, 0}, {0, 0, 1}, {2, 0, 0});
     whole.ground = parts.ground;
-    const Solution expected = shade(whole, environment, 4000);
+    const Solution expected = shade_by_paths(whole, environment, 4000);
     const std::vector<glm::vec3> sides = leaf_side_radiance(parts, solution.radiance);
     expect_near(sides[0] / expected.radiance.front[0], glm::vec3(1), 0.01f);
     expect_near(sides[1] / expected.radiance.back[0], glm::vec3(1), 0.01f);
-    EXPECT_EQ(count(shade(parts, environment, 1), "paths"), 16u) << "at least one path in either half of every part";
+    EXPECT_EQ(count(shade_by_paths(parts, environment, 1), "paths"), 16u)
+        << "at least one path in either half of every part";
 }
 
 TEST(PathTraced, BarkIsShadedButNotInReferences) {
@@ -208,7 +210,7 @@ TEST(PathTraced, BarkIsShadedButNotInReferences) {
     scene.patches.back().kind = PatchKind::bark;
     --scene.leaf_count;
     const Environment environment = test::sky_and_sun();
-    EXPECT_GT(luminance(shade(scene, environment, 16).radiance.front.back()), 0.01f);
+    EXPECT_GT(luminance(shade_by_paths(scene, environment, 16).radiance.front.back()), 0.01f);
     const PathTracedReference reference = path_trace_reference(scene, environment, 16, 1, silent_progress());
     EXPECT_EQ(reference.sides.size(), 100u);
     EXPECT_EQ(reference.paths_per_side, 16u);
@@ -292,7 +294,7 @@ TEST(PatchPoints, HolesAndEmptyPatchesAreLeftOut) {
     scene.masks[0].cutoff = 2; // nothing is solid
     PathNumbers numbers(3, 0);
     EXPECT_FALSE(PatchPoints(scene).sample(0, numbers, point));
-    const Solution solution = shade(scene, test::sky_and_sun(), 4);
+    const Solution solution = shade_by_paths(scene, test::sky_and_sun(), 4);
     EXPECT_EQ(solution.radiance.front[0], glm::vec3(0));
 }
 

@@ -9,7 +9,7 @@
 namespace kokage {
 namespace {
 
-Image noise(int width, int height, unsigned seed) {
+Image seeded_noise(int width, int height, unsigned seed) {
     Image image(width, height, 3);
     std::mt19937 random(seed);
     for (float& value : image.pixels)
@@ -41,7 +41,7 @@ class CubeAreaFilter : public testing::TestWithParam<Shape> {};
 
 TEST_P(CubeAreaFilter, EveryTexelIsTheMeanOfWhatItCovers) {
     const auto [width, height, size] = GetParam();
-    const Image image = noise(width, height, 7);
+    const Image image = seeded_noise(width, height, 7);
     const std::vector<glm::vec3> texels = cube_from_lat_long(image, size);
     for (int face = 0; face < 6; ++face)
         for (int y = 0; y < size; ++y)
@@ -55,7 +55,7 @@ TEST_P(CubeAreaFilter, EveryTexelIsTheMeanOfWhatItCovers) {
 
 TEST_P(CubeAreaFilter, TheIntegralOverTheSphereIsKept) {
     const auto [width, height, size] = GetParam();
-    const Image image = noise(width, height, 8);
+    const Image image = seeded_noise(width, height, 8);
     const std::vector<glm::vec3> texels = cube_from_lat_long(image, size);
     double of_image = 0, of_cube = 0;
     for (int y = 0; y < height; ++y)
@@ -104,7 +104,7 @@ TEST(CubeAreaFilterNumbers, AConstantStaysConstant) {
 }
 
 TEST(CubeAreaFilterNumbers, TheSameBitsOnAnyThreadCount) {
-    const Image image = noise(100, 50, 3);
+    const Image image = seeded_noise(100, 50, 3);
     set_thread_count(1);
     const std::vector<glm::vec3> one = cube_from_lat_long(image, 48);
     set_thread_count(3);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr TexelFormat kFormats[] = {TexelFormat::half_rgb, TexelFormat::float_rgb, TexelFormat::shared_exponent};
 
-PrefilteredCube small_cube() {
+PrefilteredCube filtered_cube() {
     return smooth_cube({.size = 16, .parameters = {0, 0.134, 0.5, 1}});
 }
 
@@ -76,7 +76,7 @@ TEST(CubeFile, DdsReadsBackWhatWasWritten) {
 
 TEST(CubeFile, WhatAFormatCannotHoldIsCountedOrRefused) {
     TemporaryFolder folder;
-    PrefilteredCube cube = small_cube();
+    PrefilteredCube cube = filtered_cube();
     cube.levels[0].texels[5] = {1e6f, 0, 0};
     cube.levels[1].texels[7] = {-1, 2, 3};
     EXPECT_EQ(write_ktx2(folder / "a.ktx2", cube, TexelFormat::half_rgb).clamped_texels, 1u);
@@ -101,14 +101,14 @@ TEST(CubeFile, WhatAFormatCannotHoldIsCountedOrRefused) {
                    "level 2, face -X, texel (2, 1) is not finite");
     expect_refused([&] { write_dds(folder / "a.dds", cube, TexelFormat::half_rgb); }, "not finite");
     EXPECT_EQ(read_text(folder / "a.ktx2"), before);
-    expect_refused([&] { write_dds(folder / "a.dds", small_cube(), TexelFormat::shared_exponent); }, "take .ktx2");
+    expect_refused([&] { write_dds(folder / "a.dds", filtered_cube(), TexelFormat::shared_exponent); }, "take .ktx2");
     expect_refused(
         [&] {
             write_dds(folder / "a.dds", smooth_cube({.size = 256, .parameters = even_roughness(9)}),
                       TexelFormat::half_rgb);
         },
         "room for the roughness of 8 levels, not of 9");
-    expect_refused([&] { write_ktx2(folder / "no/such/a.ktx2", small_cube(), TexelFormat::half_rgb); }, "no folder");
+    expect_refused([&] { write_ktx2(folder / "no/such/a.ktx2", filtered_cube(), TexelFormat::half_rgb); }, "no folder");
 }
 
 std::string bytes_from_base64(const std::string& text) {
@@ -140,7 +140,7 @@ TEST(CubeFile, KtxParseReadsTheSame) {
     if (modules.empty())
         GTEST_SKIP() << "skipped: the npm package three is missing (.ci/setup tests)";
     TemporaryFolder folder;
-    const PrefilteredCube cube = small_cube();
+    const PrefilteredCube cube = filtered_cube();
     std::vector<std::string> arguments = {modules};
     for (const TexelFormat format : kFormats) {
         arguments.push_back(folder / (std::string(texel_format_name(format)) + ".ktx2"));
@@ -274,7 +274,7 @@ void expect_refused(const std::string& good, const std::string& name, const std:
 
 TEST(CubeFile, DamagedKtx2FilesAreRefusedByName) {
     TemporaryFolder folder;
-    write_ktx2(folder / "a.ktx2", small_cube(), TexelFormat::half_rgb);
+    write_ktx2(folder / "a.ktx2", filtered_cube(), TexelFormat::half_rgb);
     const std::string good = read_text(folder / "a.ktx2");
     const std::size_t index = 80;
     const std::vector<Damage> all = {
@@ -337,7 +337,7 @@ TEST(CubeFile, DamagedKtx2FilesAreRefusedByName) {
 
 TEST(CubeFile, DamagedDdsFilesAreRefusedByName) {
     TemporaryFolder folder;
-    write_dds(folder / "a.dds", small_cube(), TexelFormat::half_rgb);
+    write_dds(folder / "a.dds", filtered_cube(), TexelFormat::half_rgb);
     const std::vector<Damage> all = {
         {"empty", "not a DDS file", [](std::string& b) { b.clear(); }},
         {"cut in the header", "cut off within its header", [](std::string& b) { b.resize(50); }},
@@ -365,7 +365,7 @@ TEST(CubeFile, DamagedDdsFilesAreRefusedByName) {
 
 TEST(CubeFile, AnotherProgramsFilesAreReadWithEvenRoughness) {
     TemporaryFolder folder;
-    const PrefilteredCube cube = small_cube();
+    const PrefilteredCube cube = filtered_cube();
     write_ktx2(folder / "a.ktx2", cube, TexelFormat::half_rgb);
     write_dds(folder / "a.dds", cube, TexelFormat::half_rgb);
     std::string ktx2 = read_text(folder / "a.ktx2"), dds = read_text(folder / "a.dds");

@@ -13,7 +13,7 @@
 namespace kokage::test {
 namespace {
 
-Progress quiet;
+Progress quiet_gloss;
 
 /// Light that varies over the sphere, nowhere negative.
 LightMap patchy_map(std::uint64_t seed) {
@@ -195,7 +195,7 @@ TEST(LightMapReaders, AreWhatTheCameraMaySeeOfRoughGloss) {
     EXPECT_EQ(readers(plates), (Flags{0, 0}));
 }
 
-double mean_of(const Image& image) {
+double mean_value(const Image& image) {
     double sum = 0;
     for (const float value : image.pixels)
         sum += double(value);
@@ -213,10 +213,11 @@ TEST(LightMapGloss, IsSetRightByRaysThatAreGathered) {
     const RayQueries queries(plates.patches);
     const auto reflected = [&](int gather_rays) {
         options.gather_rays = gather_rays;
-        return mean_of(render_picture(plates.scene, queries, plates.sky, camera, options, quiet).layers->reflection);
+        return mean_value(
+            render_picture(plates.scene, queries, plates.sky, camera, options, quiet_gloss).layers->reflection);
     };
-    const double truth =
-        mean_of(render_path_traced(plates.scene, queries, plates.sky, camera, options, quiet).layers->reflection);
+    const double truth = mean_value(
+        render_path_traced(plates.scene, queries, plates.sky, camera, options, quiet_gloss).layers->reflection);
     EXPECT_NEAR(reflected(0) / truth, 2, 0.06);
     EXPECT_NEAR(reflected(8) / truth, 1, 0.05);
 }

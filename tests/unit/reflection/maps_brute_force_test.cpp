@@ -13,7 +13,7 @@ using namespace kokage;
 
 namespace {
 
-Environment noise(int width, int height, std::uint64_t seed = 1) {
+Environment noise_surroundings(int width, int height, std::uint64_t seed = 1) {
     Environment environment;
     environment.remainder = Image(width, height, 3);
     Random random(seed);
@@ -22,7 +22,7 @@ Environment noise(int width, int height, std::uint64_t seed = 1) {
     return environment;
 }
 
-glm::dvec3 random_direction(Random& random) {
+glm::dvec3 drawn_direction(Random& random) {
     const double z = 2 * random.uniform_double() - 1, phi = 2 * kPiDouble * random.uniform_double();
     return {std::sqrt(1 - z * z) * std::cos(phi), z, std::sqrt(1 - z * z) * std::sin(phi)};
 }
@@ -34,7 +34,7 @@ TexelLayout layout_of(LobeKind kind, std::initializer_list<double> parameters, i
     Random random(7);
     for (double parameter : parameters) {
         for (int i = 0; i < directions; ++i)
-            layout.directions.push_back(glm::vec3(random_direction(random)));
+            layout.directions.push_back(glm::vec3(drawn_direction(random)));
         for (const glm::vec3& axis :
              {glm::vec3(0, 1, 0), glm::vec3(0, -1, 0), glm::vec3(-1, 0, 0), glm::vec3(1, 0, 0), glm::vec3(0, 0, 1)})
             layout.directions.push_back(axis);
@@ -43,8 +43,8 @@ TexelLayout layout_of(LobeKind kind, std::initializer_list<double> parameters, i
     return layout;
 }
 
-const std::initializer_list<double> kExponents = {0, 0.3, 1, 9.7, 200, 5000, 1e5};
-const std::initializer_list<double> kRoughness = {1, 0.6, 0.2, 0.05, 0.001};
+const std::initializer_list<double> kBruteForceExponents = {0, 0.3, 1, 9.7, 200, 5000, 1e5};
+const std::initializer_list<double> kBruteForceRoughness = {1, 0.6, 0.2, 0.05, 0.001};
 
 std::vector<glm::vec3> baked(const TexelLayout& layout, const Environment& environment) {
     std::vector<glm::vec3> filtered(layout.size());
@@ -55,7 +55,7 @@ std::vector<glm::vec3> baked(const TexelLayout& layout, const Environment& envir
 }
 
 TEST(BruteForceBaker, AgreesWithItsTwin) {
-    Environment environment = noise(64, 32);
+    Environment environment = noise_surroundings(64, 32);
     DistantLight sun;
     sun.direction = glm::normalize(glm::vec3(1, 2, -1));
     sun.half_angle = 0.0047f;
@@ -65,7 +65,7 @@ TEST(BruteForceBaker, AgreesWithItsTwin) {
     lamp.half_angle = 0.4f;
     environment.distant_lights = {sun, lamp};
     for (const TexelLayout& layout :
-         {layout_of(LobeKind::phong, kExponents, 8), layout_of(LobeKind::ggx, kRoughness, 8)}) {
+         {layout_of(LobeKind::phong, kBruteForceExponents, 8), layout_of(LobeKind::ggx, kBruteForceRoughness, 8)}) {
         const auto filtered = baked(layout, environment);
         for (std::size_t i = 0; i < layout.size(); ++i) {
             const glm::dvec3 slow = filtered_by_brute_force(environment, {layout.kind, double(layout.parameters[i])},
@@ -78,11 +78,11 @@ TEST(BruteForceBaker, AgreesWithItsTwin) {
 }
 
 TEST(BruteForceBaker, TwinIsTheFormula) { // eqs 8 and 9 with a power of the cosine, as printed
-    const Environment environment = noise(48, 24);
+    const Environment environment = noise_surroundings(48, 24);
     Random random(3);
     for (double exponent : {0.3, 4.0, 60.0})
         for (int i = 0; i < 5; ++i) {
-            const glm::dvec3 direction = random_direction(random);
+            const glm::dvec3 direction = drawn_direction(random);
             double weights = 0, sum = 0;
             for (int y = 0; y < 24; ++y)
                 for (int x = 0; x < 48; ++x) {
@@ -97,11 +97,11 @@ TEST(BruteForceBaker, TwinIsTheFormula) { // eqs 8 and 9 with a power of the cos
 }
 
 TEST(BruteForceBaker, FurnaceStaysConstant) {
-    Environment environment = noise(128, 64);
+    Environment environment = noise_surroundings(128, 64);
     environment.remainder.pixels.assign(environment.remainder.pixels.size(), 0.7f);
     const double constant = double(0.7f);
     for (const TexelLayout& layout :
-         {layout_of(LobeKind::phong, kExponents, 4), layout_of(LobeKind::ggx, kRoughness, 4)}) {
+         {layout_of(LobeKind::phong, kBruteForceExponents, 4), layout_of(LobeKind::ggx, kBruteForceRoughness, 4)}) {
         for (const glm::vec3& value : baked(layout, environment))
             ASSERT_EQ(value, glm::vec3(0.7f));
         for (std::size_t i = 0; i < layout.size(); ++i) {
@@ -114,27 +114,27 @@ TEST(BruteForceBaker, FurnaceStaysConstant) {
 
 TEST(BruteForceBaker, HardImagesStayFinite) {
     for (auto [width, height] : {std::pair(1, 1), std::pair(2, 1), std::pair(3, 5), std::pair(33, 16)}) {
-        Environment environment = noise(width, height);
+        Environment environment = noise_surroundings(width, height);
         environment.remainder.pixels[0] = 1e30f;
         environment.distant_lights.resize(1);
         environment.distant_lights[0].irradiance = glm::vec3(1e30f);
         environment.distant_lights[0].half_angle = 0.01f;
         for (const TexelLayout& layout :
-             {layout_of(LobeKind::phong, kExponents, 20), layout_of(LobeKind::ggx, kRoughness, 20)})
+             {layout_of(LobeKind::phong, kBruteForceExponents, 20), layout_of(LobeKind::ggx, kBruteForceRoughness, 20)})
             for (const glm::vec3& value : baked(layout, environment))
                 for (std::size_t c = 0; c < 3; ++c) {
                     ASSERT_TRUE(std::isfinite(value[c])) << width << "x" << height;
                     ASSERT_GE(value[c], 0);
                 }
     }
-    const Environment environment = noise(4, 2);
+    const Environment environment = noise_surroundings(4, 2);
     WorkReport report;
     std::vector<glm::vec3> none;
     EXPECT_THROW(brute_force_baker({}, 8, 4)->bake(environment, none, report), InputError);
 }
 
 TEST(BruteForceBaker, SameBitsWithAnyThreads) {
-    const Environment environment = noise(64, 32);
+    const Environment environment = noise_surroundings(64, 32);
     const TexelLayout layout = layout_of(LobeKind::phong, {1, 50, 5000}, 100);
     set_thread_count(1);
     const auto one = baked(layout, environment);

@@ -13,7 +13,7 @@ using namespace kokage;
 
 namespace {
 
-Image noise(int width, int height) {
+Image noise_picture(int width, int height) {
     Image image(width, height, 3);
     Random random(3);
     for (float& value : image.pixels)
@@ -95,7 +95,7 @@ SurfacePixels scattered_pixels(std::size_t count) {
 
 TEST(GlossyPicture, BruteForceIsTheFormula) {
     // Eqs 1 and 2 over every pixel cut into 16 x 16 points, divided by the full mass 2 pi/(L+1).
-    const Image image = noise(24, 12);
+    const Image image = noise_picture(24, 12);
     const SurfacePixels pixels = scattered_pixels(12);
     for (double exponent : {1.0, 6.0, 25.0}) {
         const std::vector<float> parameters(pixels.size(), float(exponent));
@@ -124,7 +124,7 @@ TEST(GlossyPicture, BruteForceIsTheFormula) {
 
 TEST(GlossyPicture, AboveTheHorizonAloneIsTheWholeLobe) {
     // Pixels whose lobe ends above the horizon: with and without it the same.
-    const Image image = noise(64, 32);
+    const Image image = noise_picture(64, 32);
     Environment environment;
     environment.remainder = image;
     SurfacePixels pixels = scattered_pixels(20);
@@ -159,7 +159,7 @@ TEST(GlossyPicture, MapAndBruteForceAgreeInAFurnace) {
 }
 
 TEST(GlossyPicture, SameBitsWithAnyThreads) {
-    const Image image = noise(64, 32);
+    const Image image = noise_picture(64, 32);
     const SurfacePixels pixels = scattered_pixels(300);
     const std::vector<float> parameters(pixels.size(), 20.f);
     set_thread_count(1);

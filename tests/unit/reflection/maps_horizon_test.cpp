@@ -14,7 +14,7 @@ using namespace kokage;
 
 namespace {
 
-glm::dvec3 random_direction(Random& random) {
+glm::dvec3 direction_of_horizon(Random& random) {
     const double y = 2 * random.uniform_double() - 1, phi = 2 * kPiDouble * random.uniform_double();
     return {std::sqrt(1 - y * y) * std::cos(phi), y, std::sqrt(1 - y * y) * std::sin(phi)};
 }
@@ -66,8 +66,8 @@ double mean_error(const Environment& environment, const HorizonTable& table, con
     Random random(11);
     double error = 0;
     for (int i = 0; i < placements; ++i) {
-        const glm::dvec3 normal = random_direction(random);
-        const glm::dvec3 tangent = glm::normalize(glm::cross(normal, random_direction(random)));
+        const glm::dvec3 normal = direction_of_horizon(random);
+        const glm::dvec3 tangent = glm::normalize(glm::cross(normal, direction_of_horizon(random)));
         const glm::dvec3 mirrored = std::sin(elevation) * normal + std::cos(elevation) * tangent;
         const glm::dvec3 exact = clipped_by_brute_force(environment, lobe, mirrored, normal);
         const glm::vec3 fast = filtered_above_horizon(
@@ -156,10 +156,10 @@ TEST(Horizon, NumbersStayFinite) {
                 const double narrow = random.uniform_double();
                 const double parameter =
                     kind == LobeKind::phong ? 1e-3 * std::pow(1e9, narrow) : std::pow(1e-4, narrow);
-                const glm::vec3 normal(random_direction(random));
+                const glm::vec3 normal(direction_of_horizon(random));
                 const glm::vec3 mirrored = i % 3 == 0   ? normal
                                            : i % 3 == 1 ? -normal
-                                                        : glm::vec3(random_direction(random));
+                                                        : glm::vec3(direction_of_horizon(random));
                 const HorizonLookup at = table.lookup(normal, mirrored, parameter);
                 ASSERT_TRUE(at.count == 1 || at.count == 2);
                 for (const glm::vec3& direction : at.directions)

@@ -12,7 +12,7 @@ using namespace kokage;
 
 namespace {
 
-Image noise(int width, int height) {
+Image noise_to_sum(int width, int height) {
     Image image(width, height, 3);
     Random random(4);
     for (float& value : image.pixels)
@@ -35,7 +35,7 @@ std::vector<glm::dvec3> directions(int width, int height) {
 
 TEST(NearSums, ThePartIsTheSlowSum) {
     for (const glm::ivec2 size : {glm::ivec2(256, 128), {97, 31}, {40, 90}, {5, 3}, {1, 1}}) {
-        const Image image = noise(size.x, size.y);
+        const Image image = noise_to_sum(size.x, size.y);
         NearSums pixels(size.x, size.y);
         pixels.set_pixels(image, 0.5f);
         NearSums::Scratch scratch;
@@ -68,7 +68,7 @@ TEST(NearSums, ThePartIsTheSlowSum) {
 TEST(NearSums, TheWholeLobeIsTheBruteForce) {
     for (const glm::ivec2 size : {glm::ivec2(128, 64), {97, 31}, {40, 90}, {3, 5}, {1, 1}}) {
         Environment environment;
-        environment.remainder = noise(size.x, size.y);
+        environment.remainder = noise_to_sum(size.x, size.y);
         NearSums pixels(size.x, size.y);
         pixels.set_pixels(environment.remainder);
         NearSums::Scratch scratch;

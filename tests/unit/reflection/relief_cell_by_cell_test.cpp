@@ -10,7 +10,8 @@ using namespace kokage;
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfiniteDepth = std::numeric_limits<float>::infinity(),
+                kNanDepth = std::numeric_limits<float>::quiet_NaN();
 
 HeightField field_of(int width, int height, HeightWrap wrap, auto&& depth) {
     HeightField field{width, height, wrap, {}};
@@ -228,7 +229,7 @@ TEST(ReliefCellByCell, TakesOddRays) {
     EXPECT_NEAR(t({{0.25f, 0.25f, 0}, {0, 0, 1}, 0.5f}), 0.5, 1e-12);
     EXPECT_EQ(t({{0.25f, 0.25f, 0.4f}, {0, 0, 1}, -1.f}), never);
     // What is not finite hits nothing.
-    for (const float bad : {kNan, kInfinity, -kInfinity})
+    for (const float bad : {kNanDepth, kInfiniteDepth, -kInfiniteDepth})
         for (int i = 0; i < 3; ++i) {
             ReliefRay from{{0.25f, 0.25f, 0}, {0, 0, 1}}, to = from;
             from.origin[i] = bad;
@@ -236,7 +237,7 @@ TEST(ReliefCellByCell, TakesOddRays) {
             EXPECT_EQ(t(from), never);
             EXPECT_EQ(t(to), never);
         }
-    EXPECT_EQ(t({{0.25f, 0.25f, 0}, {0, 0, 1}, kNan}), never);
+    EXPECT_EQ(t({{0.25f, 0.25f, 0}, {0, 0, 1}, kNanDepth}), never);
 }
 
 TEST(ReliefCellByCell, ClampedTilesGoOnForEver) {

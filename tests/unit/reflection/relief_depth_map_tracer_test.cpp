@@ -14,7 +14,8 @@ using namespace kokage;
 
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity(), kNan = std::numeric_limits<float>::quiet_NaN();
+constexpr float kInfiniteNumber = std::numeric_limits<float>::infinity(),
+                kNanNumber = std::numeric_limits<float>::quiet_NaN();
 
 /// Cones on a flat ground, as [D] favours.
 HeightField cones(int size, HeightWrap wrap = HeightWrap::repeat) {
@@ -256,9 +257,9 @@ TEST(ReliefDepthMapTracer, AnswersEveryRay) {
         std::vector<ReliefRay> rays(200);
         for (ReliefRay& ray : rays)
             ray = random_relief_ray(random, field);
-        rays[0].origin.x = kNan;
-        rays[1].direction.y = kInfinity;
-        rays[2].t_most = kNan;
+        rays[0].origin.x = kNanNumber;
+        rays[1].direction.y = kInfiniteNumber;
+        rays[2].t_most = kNanNumber;
         rays[3] = {{0.5, 0.5, 0}, {0, 0, 0}};
         rays[4] = {{1e6f, -1e6f, -1}, {1, 0, 1}};
         rays[5] = {{0, 0, -1}, {1, 0, -1}};

@@ -16,12 +16,12 @@ namespace {
 
 /// The method in a plain loop and double precision, on the truth's cells: for rays from the reference plane downwards
 /// that stay near.
-struct PlainHit {
+struct PlainLinearHit {
     double t = -1;
     std::uint32_t reads = 0;
 };
-PlainHit plain_linear(const HeightField& field, const ReliefRay& ray, int steps, int bisections) {
-    PlainHit hit;
+PlainLinearHit plain_linear(const HeightField& field, const ReliefRay& ray, int steps, int bisections) {
+    PlainLinearHit hit;
     const glm::dvec3 o(ray.origin), d(ray.direction);
     const auto below = [&](double t) {
         ++hit.reads;
@@ -49,7 +49,7 @@ void expect_plain_loop() {
         make_linear_tracer(field, search)->trace(rays, hits);
         int other = 0; // rays that graze the surface at a step within rounding
         for (std::size_t k = 0; k < rays.size(); ++k) {
-            const PlainHit plain = plain_linear(field, rays[k], search.steps, search.bisections);
+            const PlainLinearHit plain = plain_linear(field, rays[k], search.steps, search.bisections);
             if (hits[k].reads != plain.reads || std::abs(double(hits[k].t) - plain.t) > 1e-5) {
                 ++other;
                 continue;

@@ -82,7 +82,7 @@ Relief integrate(const Image& normals, const NormalMapOptions& options) {
     return relief_from_normals(normals, "map", options, report);
 }
 
-double waves(double u, double v) {
+double wave_height(double u, double v) {
     constexpr double turn = 2 * kPiDouble;
     return 0.01 * std::sin(turn * (2 * u + v)) + 0.004 * std::cos(turn * (5 * v - 3 * u)) + 0.006 * std::sin(turn * u);
 }
@@ -90,7 +90,7 @@ double waves(double u, double v) {
 TEST(ReliefNormalMap, GivesThePeriodicHeightsBackInMetres) {
     for (const glm::ivec2 size : {glm::ivec2(64, 64), glm::ivec2(60, 37), glm::ivec2(33, 128)}) {
         const glm::dvec2 tile(0.5, 0.8);
-        const Surface surface = surface_of(size.x, size.y, tile, waves);
+        const Surface surface = surface_of(size.x, size.y, tile, wave_height);
         const Relief relief = integrate(surface.normals, {.tile_m = glm::vec2(tile)});
         const Fit match = fit(doubles(surface.heights.pixels), heights_m(relief));
         EXPECT_NEAR(match.gain, 1, 1e-4) << size.x << " x " << size.y;
@@ -101,7 +101,7 @@ TEST(ReliefNormalMap, GivesThePeriodicHeightsBackInMetres) {
 }
 
 TEST(ReliefNormalMap, TakesGreenUpAndDown) {
-    Surface surface = surface_of(48, 48, {1, 1}, waves);
+    Surface surface = surface_of(48, 48, {1, 1}, wave_height);
     for (std::size_t i = 1; i < surface.normals.pixels.size(); i += 3)
         surface.normals.pixels[i] = 1 - surface.normals.pixels[i];
     NormalMapReport right, wrong;
@@ -163,7 +163,7 @@ TEST(ReliefNormalMap, GivesBarkBack) {
 }
 
 TEST(ReliefNormalMap, RepairsOrRefusesWhatIsNoNormal) {
-    Surface surface = surface_of(32, 32, {1, 1}, waves);
+    Surface surface = surface_of(32, 32, {1, 1}, wave_height);
     const float nan = std::numeric_limits<float>::quiet_NaN();
     surface.normals.at(3, 5)[1] = nan;
     surface.normals.at(4, 5)[2] = 0.2f; // faces down

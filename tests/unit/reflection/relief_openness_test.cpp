@@ -19,7 +19,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-HeightField field_of(int width, int height, HeightWrap wrap, auto&& depth) {
+HeightField openness_field(int width, int height, HeightWrap wrap, auto&& depth) {
     HeightField field{width, height, wrap, {}};
     for (int y = 0; y < height; ++y)
         for (int x = 0; x < width; ++x)
@@ -27,14 +27,14 @@ HeightField field_of(int width, int height, HeightWrap wrap, auto&& depth) {
     return field;
 }
 
-HeightField waves(int width, int height, HeightWrap wrap) {
-    return field_of(width, height, wrap, [](double u, double v) {
+HeightField crossed_waves(int width, int height, HeightWrap wrap) {
+    return openness_field(width, height, wrap, [](double u, double v) {
         return 0.5 + 0.3 * std::sin(2 * kPi * (2 * u + v)) * std::cos(2 * kPi * (u - 2 * v)) +
                0.2 * std::sin(6 * kPi * v);
     });
 }
 
-double sampled_depth(const HeightField& field, double x, double y) {
+double cell_depth(const HeightField& field, double x, double y) {
     const double i = std::floor(x), j = std::floor(y);
     return bilinear_cell(field, (long long)(i), (long long)(j)).depth(x - i, y - j);
 }
@@ -50,8 +50,8 @@ double openness_by_rays(const HeightField& field, const ReliefTracer& tracer, co
     const BilinearCell cell = bilinear_cell(field, (long long)(i), (long long)(j));
     glm::dvec2 slope(cell.du + (y - j) * cell.duv, cell.dv + (x - i) * cell.duv);
     if (texel)
-        slope = 0.5 * glm::dvec2(sampled_depth(field, x + 1, y) - sampled_depth(field, x - 1, y),
-                                 sampled_depth(field, x, y + 1) - sampled_depth(field, x, y - 1));
+        slope = 0.5 * glm::dvec2(cell_depth(field, x + 1, y) - cell_depth(field, x - 1, y),
+                                 cell_depth(field, x, y + 1) - cell_depth(field, x, y - 1));
     glm::dvec3 normal(0, 0, 1);
     if (settings.normal == OpennessNormal::surface)
         normal = relief_normal(glm::vec2(slope * glm::dvec2(field.width, field.height)), settings.scale);
@@ -71,16 +71,16 @@ double openness_by_rays(const HeightField& field, const ReliefTracer& tracer, co
     return double(std::count(hidden.begin(), hidden.end(), 0)) / double(rays.size());
 }
 
-struct Errors {
+struct OpennessErrors {
     double at_texels = 0, between = 0; ///< root mean squares
 };
 
-Errors errors_against_rays(const HeightField& field, const ReliefOpenness& openness, const OpennessSettings& settings,
-                           std::uint64_t seed) {
+OpennessErrors errors_against_rays(const HeightField& field, const ReliefOpenness& openness,
+                                   const OpennessSettings& settings, std::uint64_t seed) {
     constexpr int kPoints = 120;
     const auto tracer = make_exact_tracer(field);
     Random random(seed);
-    Errors errors;
+    OpennessErrors errors;
     for (int k = 0; k < kPoints; ++k) {
         const double column = random.below(std::uint32_t(field.width)), row = random.below(std::uint32_t(field.height)),
                      x = column + random.uniform(0.02f, 0.98f), y = row + random.uniform(0.02f, 0.98f);
@@ -111,7 +111,7 @@ TEST(ReliefOpenness, OfAPlaneIsOne) {
                 for (const std::uint8_t texel : by_maps.texels)
                     ASSERT_EQ(texel, 255);
             }
-    const HeightField deep = waves(8, 8, HeightWrap::repeat);
+    const HeightField deep = crossed_waves(8, 8, HeightWrap::repeat);
     EXPECT_EQ(horizon_openness(deep, {{{1, 1}, 0}, OpennessNormal::surface, 16}).texels[11], 255) << "no depth at all";
 }
 
@@ -119,8 +119,8 @@ TEST(ReliefOpenness, OfAPlaneIsOne) {
 /// 1 / (1 + tan² α cos² φ) over φ is cos α.
 TEST(ReliefOpenness, OfAGrooveIsTheCosineOfItsSlope) {
     constexpr int kSize = 32;
-    const HeightField field = field_of(kSize, kSize, HeightWrap::repeat,
-                                       [](double u, double) { return 1 - 2 * std::abs(u - 0.5 - 0.5 / kSize); });
+    const HeightField field = openness_field(kSize, kSize, HeightWrap::repeat,
+                                             [](double u, double) { return 1 - 2 * std::abs(u - 0.5 - 0.5 / kSize); });
     for (const float depth_m : {0.1f, 0.5f, 2.f}) {
         const ReliefOpenness openness = horizon_openness(field, {{{1, 1}, depth_m}, OpennessNormal::plane, 64});
         const double inclination = std::atan(2 * double(depth_m));
@@ -137,7 +137,7 @@ TEST(ReliefOpenness, OfAGrooveIsTheCosineOfItsSlope) {
 /// In the bottom of a cone the horizon would be α all around, cos² α; of bilinear cells the last one is steeper off the
 /// axes, tan α (|cos φ| + |sin φ|) where it begins.
 TEST(ReliefOpenness, OfAPitIsThatOfItsSlopes) {
-    const HeightField field = field_of(65, 65, HeightWrap::repeat, [](double u, double v) {
+    const HeightField field = openness_field(65, 65, HeightWrap::repeat, [](double u, double v) {
         return 1 - std::min(1., std::hypot(u - 0.5, v - 0.5) / 0.4);
     });
     for (const float depth_m : {0.1f, 0.4f, 1.f}) {
@@ -154,28 +154,29 @@ TEST(ReliefOpenness, OfAPitIsThatOfItsSlopes) {
 }
 
 TEST(ReliefOpenness, IsWhatRaysFind) {
-    struct Case {
+    struct Situation {
         HeightField field;
         ReliefScale scale;
         OpennessNormal normal;
     };
-    const Case cases[] = {
-        {waves(64, 64, HeightWrap::repeat), {}, OpennessNormal::surface},
-        {waves(64, 64, HeightWrap::repeat), {{1, 1}, 0.4f}, OpennessNormal::plane},
-        {waves(48, 31, HeightWrap::repeat), {{2, 1}, 0.3f}, OpennessNormal::surface},
-        {waves(40, 56, HeightWrap::clamp), {{1, 1}, 0.3f}, OpennessNormal::surface},
+    const Situation cases[] = {
+        {crossed_waves(64, 64, HeightWrap::repeat), {}, OpennessNormal::surface},
+        {crossed_waves(64, 64, HeightWrap::repeat), {{1, 1}, 0.4f}, OpennessNormal::plane},
+        {crossed_waves(48, 31, HeightWrap::repeat), {{2, 1}, 0.3f}, OpennessNormal::surface},
+        {crossed_waves(40, 56, HeightWrap::clamp), {{1, 1}, 0.3f}, OpennessNormal::surface},
     };
     std::uint64_t seed = 31;
-    for (const Case& c : cases) {
+    for (const Situation& c : cases) {
         const OpennessSettings settings{c.scale, c.normal, 48};
-        const Errors errors = errors_against_rays(c.field, horizon_openness(c.field, settings), settings, ++seed);
+        const OpennessErrors errors =
+            errors_against_rays(c.field, horizon_openness(c.field, settings), settings, ++seed);
         EXPECT_LT(errors.at_texels, 0.007) << "seed " << seed; // of which the rays' own noise is half
         EXPECT_LT(errors.between, 0.015) << "seed " << seed;
     }
 }
 
 TEST(ReliefOpenness, FromDepthMapsIsNearThatOfRays) {
-    const HeightField field = waves(64, 64, HeightWrap::repeat);
+    const HeightField field = crossed_waves(64, 64, HeightWrap::repeat);
     const OpennessSettings settings{{{1, 1}, 0.3f}, OpennessNormal::surface, 48};
     DepthMapSettings maps;
     maps.size = maps.traced_size = 64;
@@ -191,7 +192,7 @@ TEST(ReliefOpenness, FromDepthMapsIsNearThatOfRays) {
 TEST(HorizonSweep, FindsTheHighestElevation) {
     for (const HeightWrap wrap : {HeightWrap::repeat, HeightWrap::clamp})
         for (const auto& [width, height] : {std::pair(13, 9), std::pair(1, 7)}) {
-            const HeightField field = waves(width, height, wrap);
+            const HeightField field = crossed_waves(width, height, wrap);
             const ReliefScale scale{{1.5f, 1}, 0.4f};
             const glm::dvec2 metres = texel_m(field, scale);
             double shares = 0;
@@ -212,7 +213,7 @@ TEST(HorizonSweep, FindsTheHighestElevation) {
                                 if (std::abs(at_x - std::round(at_x)) > 1e-9 &&
                                     std::abs(at_y - std::round(at_y)) > 1e-9)
                                     continue;
-                                highest = std::max(highest, (depth - sampled_depth(field, at_x, at_y)) *
+                                highest = std::max(highest, (depth - cell_depth(field, at_x, at_y)) *
                                                                 double(scale.depth_m) / (s * length));
                             }
                         ASSERT_NEAR(tangents[std::size_t(y * width + x)], highest, 0.03 + 0.02 * highest)
@@ -224,7 +225,7 @@ TEST(HorizonSweep, FindsTheHighestElevation) {
 }
 
 TEST(ReliefOpenness, IsTheSameOnAnyNumberOfThreadsAndStops) {
-    const HeightField field = waves(60, 45, HeightWrap::repeat);
+    const HeightField field = crossed_waves(60, 45, HeightWrap::repeat);
     set_thread_count(1);
     const ReliefOpenness one = horizon_openness(field, {});
     set_thread_count(3);
@@ -240,7 +241,7 @@ TEST(ReliefOpenness, IsTheSameOnAnyNumberOfThreadsAndStops) {
 }
 
 TEST(ReliefOpenness, ComesBackFromItsFileAndOthersAreRefused) {
-    const HeightField field = waves(12, 9, HeightWrap::repeat);
+    const HeightField field = crossed_waves(12, 9, HeightWrap::repeat);
     const OpennessSettings settings{{}, OpennessNormal::surface, 8};
     const ReliefOpenness openness = horizon_openness(field, settings);
     const TemporaryFolder folder;
@@ -253,7 +254,7 @@ TEST(ReliefOpenness, ComesBackFromItsFileAndOthersAreRefused) {
     OpennessSettings deeper = settings;
     deeper.scale.depth_m = 0.2f;
     EXPECT_THROW(load_openness(path, field, deeper), InputError);
-    EXPECT_THROW(load_openness(path, waves(12, 9, HeightWrap::clamp), settings), InputError);
+    EXPECT_THROW(load_openness(path, crossed_waves(12, 9, HeightWrap::clamp), settings), InputError);
     const std::string bytes = read_text(path);
     constexpr std::uint64_t seed = 9;
     Random random(seed);
@@ -268,7 +269,7 @@ TEST(ReliefOpenness, ComesBackFromItsFileAndOthersAreRefused) {
 }
 
 TEST(ReliefOpenness, RefusesSettingsThatMakeNoSense) {
-    const HeightField field = waves(8, 8, HeightWrap::repeat);
+    const HeightField field = crossed_waves(8, 8, HeightWrap::repeat);
     EXPECT_THROW(horizon_openness(field, {{}, OpennessNormal::plane, 3}), InputError);
     EXPECT_THROW(horizon_openness(field, {{}, OpennessNormal::plane, 10000}), InputError);
     EXPECT_THROW(horizon_openness(field, {{{0, 1}, 0.1f}, OpennessNormal::plane, 32}), InputError);

@@ -21,7 +21,7 @@ TubeShape fine_trunk() {
 }
 
 /// A part of the trunk fills the picture.
-Camera close_camera() {
+Camera camera_at_tube() {
     return camera_at({0.3f, 0.6f, 0.9f}, {0, 0.5f, 0}, 0.2f);
 }
 
@@ -52,13 +52,13 @@ TEST_P(ReliefPictureTruth, AgreesWithADisplacedMeshAndTheRendererWithIt) {
     const RayQueries queries(tube.patches);
     const PictureOptions options = without_ground(20, 20, 400);
     const Image truth =
-        render_path_traced(tube.scene, queries, environment, close_camera(), options, silent_progress()).radiance;
+        render_path_traced(tube.scene, queries, environment, camera_at_tube(), options, silent_progress()).radiance;
 
     const PatchScene mesh = tube.displaced(10);
     const ShadedScene unlit = evenly_shaded(mesh, glm::vec3(0.f));
     const Image twin =
-        render_path_traced(unlit, RayQueries(mesh), environment, close_camera(), options, silent_progress()).radiance;
-    const Image quick = fast(tube, environment, close_camera(), without_ground(20, 20, 64)).radiance;
+        render_path_traced(unlit, RayQueries(mesh), environment, camera_at_tube(), options, silent_progress()).radiance;
+    const Image quick = fast(tube, environment, camera_at_tube(), without_ground(20, 20, 64)).radiance;
     for (std::size_t c = 0; c < 3; ++c) {
         EXPECT_NEAR(mean_of(truth)[c] / mean_of(twin)[c], 1, 0.015);
         EXPECT_NEAR(mean_of(quick)[c] / mean_of(truth)[c], 1, 0.02);
@@ -120,9 +120,9 @@ TEST(ReliefPicture, EvenHeightsLookLikeTheMesh) {
     const Environment environment = sky_over_dim_ground(3);
     BarkTube tube(fine_trunk(), environment, 0.02f);
     std::fill(tube.field->depths.begin(), tube.field->depths.end(), 0.f);
-    const Image even = fast(tube, environment, close_camera(), without_ground(20, 20, 16)).radiance;
+    const Image even = fast(tube, environment, camera_at_tube(), without_ground(20, 20, 16)).radiance;
     tube.scene.looks[0].relief = {};
-    const Image mesh = fast(tube, environment, close_camera(), without_ground(20, 20, 16)).radiance;
+    const Image mesh = fast(tube, environment, camera_at_tube(), without_ground(20, 20, 16)).radiance;
     EXPECT_LT(difference(even, mesh), 1e-3);
 }
 
@@ -147,10 +147,10 @@ TEST(ReliefPicture, SameBitsForAnyNumberOfThreads) {
         set_thread_count(threads);
         const PictureOptions options = without_ground(24, 24, 3);
         std::vector<float> pixels =
-            render_picture(tube.scene, queries, environment, close_camera(), options, silent_progress())
+            render_picture(tube.scene, queries, environment, camera_at_tube(), options, silent_progress())
                 .radiance.pixels;
         const std::vector<float> truth =
-            render_path_traced(tube.scene, queries, environment, close_camera(), options, silent_progress())
+            render_path_traced(tube.scene, queries, environment, camera_at_tube(), options, silent_progress())
                 .radiance.pixels;
         set_thread_count(0);
         pixels.insert(pixels.end(), truth.begin(), truth.end());
@@ -206,7 +206,7 @@ TEST(ReliefPicture, WhatStandsInFrontOfReliefIsSeen) {
 TEST(ReliefPicture, BadReliefIsRefused) {
     const Environment environment = sky_over_dim_ground(0);
     BarkTube tube(fine_trunk(), environment, 0.02f);
-    const auto draw = [&] { fast(tube, environment, close_camera(), without_ground(4, 4, 1)); };
+    const auto draw = [&] { fast(tube, environment, camera_at_tube(), without_ground(4, 4, 1)); };
     tube.scene.looks[0].relief.depth_m = -1;
     EXPECT_THROW(draw(), InputError);
     tube.scene.looks[0].relief.depth_m = std::nanf("");

@@ -21,8 +21,8 @@ std::string refusal(const ReliefMesh& mesh, const ReliefDepth& depth = {}) {
     return "";
 }
 
-/// Two triangles over a square of 2 x 3 m in the plane z = 0, tiles of 0.5 x 0.25 m, v downwards.
-SurfaceArrays square() {
+/// Two triangles over a shell_square of 2 x 3 m in the plane z = 0, tiles of 0.5 x 0.25 m, v downwards.
+SurfaceArrays shell_square() {
     SurfaceArrays s;
     s.positions = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
     s.normals.assign(4, {0, 0, 1});
@@ -32,23 +32,23 @@ SurfaceArrays square() {
 }
 
 TEST(ReliefShell, RefusesWhatItCannotUse) {
-    SurfaceArrays s = square();
+    SurfaceArrays s = shell_square();
     s.uvs.clear();
     EXPECT_EQ(refusal(s.mesh()),
               "bark of oak.glb: the mesh has no texture coordinates, and relief needs them: unwrap it, "
               "or switch its relief off");
-    s = square();
+    s = shell_square();
     s.normals.pop_back();
     EXPECT_NE(refusal(s.mesh()).find("3 normals"), std::string::npos);
-    s = square();
+    s = shell_square();
     s.uvs[2].x = std::numeric_limits<float>::quiet_NaN();
     EXPECT_NE(refusal(s.mesh()).find("vertex 2"), std::string::npos);
-    s = square();
+    s = shell_square();
     s.triangles[1].z = 4;
     EXPECT_NE(refusal(s.mesh()).find("triangle 1 has corner 4"), std::string::npos);
-    EXPECT_NE(refusal(square().mesh(), {-1, 0, 0.2f}).find("must be finite"), std::string::npos);
-    EXPECT_NE(refusal(square().mesh(), {0.1f, 0, 0.7f}).find("at most 0.5"), std::string::npos);
-    EXPECT_EQ(refusal(square().mesh()), "");
+    EXPECT_NE(refusal(shell_square().mesh(), {-1, 0, 0.2f}).find("must be finite"), std::string::npos);
+    EXPECT_NE(refusal(shell_square().mesh(), {0.1f, 0, 0.7f}).find("at most 0.5"), std::string::npos);
+    EXPECT_EQ(refusal(shell_square().mesh()), "");
     EXPECT_EQ(refusal({}), "");
 }
 
@@ -88,7 +88,7 @@ TEST(ReliefShell, DepthShrinksWithTilesAndRadius) {
 }
 
 TEST(ReliefShell, DegenerateTrianglesAndNoDepthAreSolid) {
-    SurfaceArrays s = square();
+    SurfaceArrays s = shell_square();
     s.positions.push_back({1, 1.5f, 0}); // on the diagonal
     s.normals.push_back({0, 0, 1});
     s.uvs.push_back({2, 6});
@@ -99,7 +99,7 @@ TEST(ReliefShell, DegenerateTrianglesAndNoDepthAreSolid) {
     EXPECT_FALSE(shell.prisms[1].is_solid);
     EXPECT_TRUE(shell.prisms[2].is_solid);
     EXPECT_TRUE(shell.prisms[3].is_solid);
-    for (const auto& prism : make_relief_shell(square().mesh(), {0, 0, 0.3f}, "square").prisms)
+    for (const auto& prism : make_relief_shell(shell_square().mesh(), {0, 0, 0.3f}, "square").prisms)
         EXPECT_TRUE(prism.is_solid);
 }
 
@@ -119,7 +119,7 @@ TEST(ReliefShell, PrismsThatWouldFoldGetShallower) {
 }
 
 TEST(TangentFrames, MeasureTilesInMetres) {
-    const SurfaceArrays s = square();
+    const SurfaceArrays s = shell_square();
     const TangentFrames frames = make_tangent_frames(s.mesh());
     ASSERT_EQ(frames.corners.size(), 2u);
     const TangentFrame frame = interpolate(frames, 1, {0.2f, 0.3f, 0.5f});
@@ -165,7 +165,7 @@ TEST(TangentFrames, MirroredHalvesShareNoFrame) {
 }
 
 TEST(TangentFrames, TextureWithoutAreaHasNoTangents) {
-    SurfaceArrays s = square();
+    SurfaceArrays s = shell_square();
     s.uvs.assign(4, {0.5f, 0.5f});
     const TangentFrames frames = make_tangent_frames(s.mesh());
     const TangentFrame frame = interpolate(frames, 0, glm::vec3(1.f / 3));

@@ -7,7 +7,7 @@
 namespace kokage::test {
 namespace {
 
-Progress quiet;
+Progress quiet_corners;
 
 /// Two faces of a box that share the edge x = 0, z from -1 to 1: one lies in the plane y = 0, x from -1 to 0, the other
 /// in x = 0 below it. Every corner has a position of its own.
@@ -75,7 +75,7 @@ TEST(SmoothCorners, KeepTheLightOfFacesThatMeetInAHardEdge) {
     const PictureOptions options = without_ground(8, 8, 16);
     const auto near_edge = [&](const BoxEdge& edge) { // what the upper face shows beside it
         return pixel(render_picture(edge.scene, RayQueries(edge.patches), constant_environment(glm::vec3(0.f)),
-                                    camera_at({-0.02f, 1, 0}, {-0.02f, 0, 0}, 0.01f), options, quiet)
+                                    camera_at({-0.02f, 1, 0}, {-0.02f, 0, 0}, 0.01f), options, quiet_corners)
                          .radiance,
                      4, 4)
             .r;

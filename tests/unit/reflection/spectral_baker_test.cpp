@@ -56,7 +56,7 @@ Image colour_pattern(int width, int height) {
     return image;
 }
 
-Image noise(int width, int height, std::uint64_t seed) {
+Image noise_to_bake(int width, int height, std::uint64_t seed) {
     Image image(width, height, 3);
     Random random(seed);
     for (float& value : image.pixels)
@@ -123,7 +123,8 @@ TEST(SpectralBaker, IsTheBruteForceWithinItsTolerance) {
         const bool phong = kind == LobeKind::phong;
         const TexelLayout layout = phong ? scattered(kind, 0.3, 2000, 1200) : scattered(kind, 0.2, 1, 1200);
         for (const bool pattern : {true, false}) {
-            const Environment environment = surroundings(pattern ? colour_pattern(256, 128) : noise(256, 128, 3));
+            const Environment environment =
+                surroundings(pattern ? colour_pattern(256, 128) : noise_to_bake(256, 128, 3));
             const Errors found = errors(bake(layout, environment).filtered, truth(layout, environment));
             EXPECT_LT(found.largest, pattern ? 1.5e-4 : 2e-4)
                 << lobe_kind_name(kind) << (pattern ? " pattern" : " noise");
@@ -144,7 +145,7 @@ TEST(SpectralBaker, AFewLobesAreExactShells) {
 
 TEST(SpectralBaker, SmallerToleranceSmallerError) {
     const TexelLayout layout = scattered(LobeKind::phong, 5, 1000, 600);
-    const Environment environment = surroundings(noise(128, 64, 5));
+    const Environment environment = surroundings(noise_to_bake(128, 64, 5));
     const std::vector<glm::vec3> right = truth(layout, environment);
     double before = 1;
     for (const double tolerance : {1e-2, 1e-3, 1e-4}) {
@@ -156,7 +157,7 @@ TEST(SpectralBaker, SmallerToleranceSmallerError) {
 }
 
 TEST(SpectralBaker, ASunIsALobeAndNothingIsNegative) {
-    Image image = noise(256, 128, 7);
+    Image image = noise_to_bake(256, 128, 7);
     for (int c = 0; c < 3; ++c)
         image.at(70, 40)[c] = 1e6f;
     const Environment environment = surroundings(std::move(image));
@@ -183,7 +184,7 @@ TEST(SpectralBaker, LightsOfTheUserAreFilteredToo) {
 }
 
 TEST(SpectralBaker, PhongLobesTooNarrowForTheImageAreSummedPixelByPixel) {
-    const Environment environment = surroundings(noise(64, 32, 9));
+    const Environment environment = surroundings(noise_to_bake(64, 32, 9));
     const TexelLayout layout = scattered(LobeKind::phong, 10, 1e5, 800);
     const SpectralPlan plan(layout, 64, 32, 1e-4);
     EXPECT_TRUE(plan.is_near_only(2e4f));
@@ -201,7 +202,7 @@ TEST(SpectralBaker, NarrowGgxIsAPartInHarmonicsAndPixelsNearby) {
     EXPECT_EQ(plan.near_part(0.4f).reach, 0);
     EXPECT_LE(plan.bands(), 512);
     for (const bool pattern : {true, false}) {
-        const Environment environment = surroundings(pattern ? colour_pattern(256, 128) : noise(256, 128, 3));
+        const Environment environment = surroundings(pattern ? colour_pattern(256, 128) : noise_to_bake(256, 128, 3));
         const Errors found = errors(bake(layout, environment).filtered, truth(layout, environment));
         EXPECT_LT(found.largest, 1.5e-4) << (pattern ? "pattern" : "noise");
     }
@@ -211,14 +212,14 @@ TEST(SpectralBaker, AFewNarrowGgxLobes) {
     for (const float roughness : {0.001f, 0.02f, 0.05f, 0.1f, 0.13f}) {
         TexelLayout layout = scattered(LobeKind::ggx, 0.5, 0.5, 1000);
         std::fill(layout.parameters.begin(), layout.parameters.end(), roughness);
-        const Environment environment = surroundings(noise(256, 128, 11));
+        const Environment environment = surroundings(noise_to_bake(256, 128, 11));
         EXPECT_LT(errors(bake(layout, environment).filtered, truth(layout, environment)).largest, 1.5e-4) << roughness;
     }
 }
 
 TEST(SpectralBaker, NarrowGgxInTheTolerancesThatAreAsked) {
     const TexelLayout layout = scattered(LobeKind::ggx, 0.02, 0.3, 800);
-    const Environment environment = surroundings(noise(128, 64, 5));
+    const Environment environment = surroundings(noise_to_bake(128, 64, 5));
     const std::vector<glm::vec3> right = truth(layout, environment);
     for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5})
         EXPECT_LT(errors(bake(layout, environment, {tolerance, {}}).filtered, right).largest, 1.5 * tolerance);
@@ -226,7 +227,7 @@ TEST(SpectralBaker, NarrowGgxInTheTolerancesThatAreAsked) {
 
 /// Bright and dark side by side over six orders of magnitude, a sun, and texels at, beside and between its pixels.
 TEST(SpectralBaker, NarrowGgxInHighContrast) {
-    Image image = noise(256, 128, 7);
+    Image image = noise_to_bake(256, 128, 7);
     for (float& value : image.pixels)
         value = std::pow(value, 12.f);
     image.at(70, 40)[0] = image.at(70, 40)[1] = image.at(70, 40)[2] = 1e6f;
@@ -253,7 +254,7 @@ TEST(SpectralBaker, SumsPixelByPixelShowProgressAndCanBeStopped) {
     } progress;
     const TexelLayout layout = scattered(LobeKind::phong, 2e4, 5e4, 1000);
     Environment environment;
-    environment.remainder = noise(64, 32, 3);
+    environment.remainder = noise_to_bake(64, 32, 3);
     std::vector<glm::vec3> filtered(layout.size());
     WorkReport report;
     const std::unique_ptr<Baker> baker = spectral_baker(layout, 64, 32, {}, report);
@@ -264,7 +265,7 @@ TEST(SpectralBaker, ImagesOfAnyShape) {
     for (const TexelLayout& layout :
          {scattered(LobeKind::phong, 0.3, 3000, 300), scattered(LobeKind::ggx, 0.01, 1, 300)})
         for (const glm::ivec2 size : {glm::ivec2(1, 1), {2, 1}, {1, 2}, {3, 5}, {97, 31}, {40, 40}, {20, 90}}) {
-            const Environment environment = surroundings(noise(size.x, size.y, 4));
+            const Environment environment = surroundings(noise_to_bake(size.x, size.y, 4));
             TexelLayout texels = layout;
             if (size.x * size.y == 2) { // the first ones are as far from both pixels: either is right
                 texels.directions.erase(texels.directions.begin(), texels.directions.begin() + 5);
@@ -290,7 +291,7 @@ TEST(SpectralBaker, OneColourNeedsOneBandAndSaysSo) {
 TEST(SpectralBaker, EnormousAndTinyPixelsStayFinite) {
     const TexelLayout layout = scattered(LobeKind::phong, 1, 3000, 300);
     for (const float scale : {1e-30f, 1e30f}) {
-        Image image = noise(128, 64, 2);
+        Image image = noise_to_bake(128, 64, 2);
         for (float& value : image.pixels)
             value *= scale;
         const Environment environment = surroundings(std::move(image));
@@ -298,7 +299,7 @@ TEST(SpectralBaker, EnormousAndTinyPixelsStayFinite) {
             errors(bake(layout, environment).filtered, truth(layout, environment), double(scale)).largest_relative,
             3e-4);
     }
-    Image image = noise(128, 64, 2);
+    Image image = noise_to_bake(128, 64, 2);
     image.at(5, 5)[0] = 1e30f;
     const Environment environment = surroundings(std::move(image));
     const double mean = luminance_integral(environment.remainder) / (4 * kPiDouble);
@@ -311,12 +312,12 @@ TEST(SpectralBaker, RefusesWhatItWasNotMadeFor) {
     WorkReport report;
     const auto baker = spectral_baker(layout, 32, 16, {}, report);
     std::vector<glm::vec3> filtered(layout.size());
-    EXPECT_THROW(baker->bake(surroundings(noise(16, 8, 1)), filtered, report), InputError);
+    EXPECT_THROW(baker->bake(surroundings(noise_to_bake(16, 8, 1)), filtered, report), InputError);
     filtered.pop_back();
-    EXPECT_THROW(baker->bake(surroundings(noise(32, 16, 1)), filtered, report), InputError);
+    EXPECT_THROW(baker->bake(surroundings(noise_to_bake(32, 16, 1)), filtered, report), InputError);
     filtered.resize(layout.size());
     for (const float bad : {-1.f, std::numeric_limits<float>::quiet_NaN(), std::numeric_limits<float>::infinity()}) {
-        Image image = noise(32, 16, 1);
+        Image image = noise_to_bake(32, 16, 1);
         image.at(3, 4)[1] = bad;
         EXPECT_THROW(baker->bake(surroundings(std::move(image)), filtered, report), InputError);
     }
@@ -325,9 +326,9 @@ TEST(SpectralBaker, RefusesWhatItWasNotMadeFor) {
 TEST(SpectralBaker, SameBitsWithAnyNumberOfThreadsAndFrameAfterFrame) {
     for (const TexelLayout& layout :
          {scattered(LobeKind::phong, 1, 1000, 9000), scattered(LobeKind::ggx, 0.02, 1, 9000)}) {
-        Image image = noise(128, 64, 2);
+        Image image = noise_to_bake(128, 64, 2);
         image.at(5, 5)[0] = 1e4f;
-        const Environment environment = surroundings(std::move(image)), other = surroundings(noise(128, 64, 8));
+        const Environment environment = surroundings(std::move(image)), other = surroundings(noise_to_bake(128, 64, 8));
         set_thread_count(1);
         const std::vector<glm::vec3> one = bake(layout, environment).filtered;
         set_thread_count(0);
@@ -351,7 +352,7 @@ std::string refusal(const TexelLayout& layout, int width, int height, const Spec
 }
 
 TEST(SpectralBaker, AStoredSetupGivesTheSameBits) {
-    const Environment environment = surroundings(noise(64, 32, 2));
+    const Environment environment = surroundings(noise_to_bake(64, 32, 2));
     for (const TexelLayout& layout :
          {scattered(LobeKind::phong, 1, 300, 500), scattered(LobeKind::ggx, 0.02, 1, 500)}) {
         const TemporaryFolder folder;
@@ -441,7 +442,7 @@ TEST(LobeLights, AreTheLobesOneByOne) {
 TEST(ReadTexels, IsTheSplineThere) {
     const int bands = 12;
     RingCoefficients coefficients(bands);
-    RingAnalysis(24, 12, bands).transform(noise(24, 12, 1), 1, coefficients);
+    RingAnalysis(24, 12, bands).transform(noise_to_bake(24, 12, 1), 1, coefficients);
     std::vector<RingGrid> grids;
     for (const int rings : {12, 20, 24, 30}) {
         grids.emplace_back(rings, 2 * rings);

@@ -15,7 +15,7 @@
 namespace kokage {
 namespace {
 
-glm::vec3 random_direction(Random& random) {
+glm::vec3 float_direction(Random& random) {
     const float z = random.uniform(-1, 1), angle = random.uniform(0, 2 * kPi), r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
 }
@@ -25,7 +25,7 @@ TexelLayout scattered_layout(int texels) {
     Random random(7);
     TexelLayout layout;
     for (int t = 0; t < texels; ++t) {
-        layout.directions.push_back(random_direction(random));
+        layout.directions.push_back(float_direction(random));
         layout.parameters.push_back(float(0.3 * std::pow(5000 / 0.3, double(t) / (texels - 1))));
     }
     return layout;
@@ -258,7 +258,7 @@ TEST(DirectionBands, FindsAllDirectionsOfACone) {
     Random random(3);
     std::vector<glm::dvec3> axes = {{0, 1, 0}, {0, -1, 0}, {-1, 0, 0}, {-1, 0, -1e-12}, {1, 0, 0}};
     for (int i = 0; i < 200; ++i)
-        axes.push_back(glm::normalize(glm::dvec3(random_direction(random))));
+        axes.push_back(glm::normalize(glm::dvec3(float_direction(random))));
     for (const glm::dvec3& axis : axes)
         for (double angle : {0.0, 0.05, 0.5, 1.5707963, 2.5, 3.15}) {
             std::vector<std::uint32_t> near;

@@ -12,7 +12,7 @@
 namespace kokage {
 namespace {
 
-Tree grown(const char* species) {
+Tree grown_with_zones(const char* species) {
     GrowthParameters p = find_species(species).parameters;
     p.leaves = 12000;
     return grow(p);
@@ -37,7 +37,7 @@ TEST(BarkZones, TwigsAreThinAndOnlySomeTrunksAge) {
 
 TEST(BarkZones, CutWholePatchesAndLoseNothing) {
     for (const char* species : {"birch", "pine", "oak"}) {
-        const Tree tree = grown(species);
+        const Tree tree = grown_with_zones(species);
         std::set<std::uint32_t> seen, materials;
         std::size_t zones = 0;
         for (const TreePart& part : tree.parts) {
@@ -59,7 +59,7 @@ TEST(BarkZones, CutWholePatchesAndLoseNothing) {
 }
 
 TEST(BarkZones, ABirchIsWhiteAboveAndDarkAtItsFoot) {
-    const Tree tree = grown("birch");
+    const Tree tree = grown_with_zones("birch");
     const PatchScene scene = make_patches(tree);
     float foot = 0, above = 0;
     std::size_t foot_count = 0, above_count = 0;

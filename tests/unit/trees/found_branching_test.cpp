@@ -8,7 +8,8 @@
 namespace kokage {
 namespace {
 
-Tree grown(const std::string& species, int leaves, const std::vector<std::pair<const char*, std::string>>& settings) {
+Tree grown_with(const std::string& species, int leaves,
+                const std::vector<std::pair<const char*, std::string>>& settings) {
     GrowthParameters parameters = find_species(species).parameters;
     parameters.leaves = leaves;
     for (const auto& [name, value] : settings)
@@ -35,29 +36,29 @@ void expect_generations(const Tree& truth, double least_share, std::uint64_t shu
 // Measured: trees of ten species, 2,000 to 10,000 leaves and three seeds agree wholly.
 TEST(FoundBranching, GenerationsOfEverySpeciesAgree) {
     for (const Species& species : all_species())
-        expect_generations(grown(species.name, 2500, {}), 0.99, 7);
+        expect_generations(grown_with(species.name, 2500, {}), 0.99, 7);
 }
 
 // Where branches stand so close that the nearest sample of an axis is often another branch's than the one that passes
 // through the place, or where wood at a branching point is just 1/256 of a metre thick.
 TEST(FoundBranching, GenerationsInCrowdedCrownsAgree) {
-    expect_generations(grown("cypress", 4000, {}), 0.999, 3);
-    expect_generations(grown("cypress", 4000, {{"seed", "2"}}), 0.999, 3);
-    expect_generations(grown("cherry", 10000, {{"seed", "3"}}), 0.999, 3);
+    expect_generations(grown_with("cypress", 4000, {}), 0.999, 3);
+    expect_generations(grown_with("cypress", 4000, {{"seed", "2"}}), 0.999, 3);
+    expect_generations(grown_with("cherry", 10000, {{"seed", "3"}}), 0.999, 3);
 }
 
 TEST(FoundBranching, GenerationsOfAnySeedAndSizeAgree) {
-    expect_generations(grown("oak", 1000, {{"seed", "2"}}), 0.95, 1);
-    expect_generations(grown("oak", 4000, {{"seed", "3"}}), 0.95, 2);
-    expect_generations(grown("oak", 15000, {{"seed", "4"}}), 0.95, 3);
+    expect_generations(grown_with("oak", 1000, {{"seed", "2"}}), 0.95, 1);
+    expect_generations(grown_with("oak", 4000, {{"seed", "3"}}), 0.95, 2);
+    expect_generations(grown_with("oak", 15000, {{"seed", "4"}}), 0.95, 3);
 }
 
 TEST(FoundBranching, GenerationsOfAlphaCardsAgree) {
-    expect_generations(grown("oak", 3000, {{"leaf_form", "alpha"}, {"seed", "5"}}), 0.95, 4);
+    expect_generations(grown_with("oak", 3000, {{"leaf_form", "alpha"}, {"seed", "5"}}), 0.95, 4);
 }
 
 TEST(FoundBranching, DoesNotDependOnTheOrderOfTheFile) {
-    const Tree truth = grown("oak", 1500, {});
+    const Tree truth = grown_with("oak", 1500, {});
     const Tree one = found_again(truth, 11), other = found_again(truth, 12);
     ASSERT_EQ(one.skeleton.branches.size(), other.skeleton.branches.size());
     ASSERT_EQ(one.leaves.size(), other.leaves.size());
@@ -71,7 +72,7 @@ TEST(FoundBranching, DoesNotDependOnTheOrderOfTheFile) {
 }
 
 TEST(FoundBranching, TheMeasureSeesWrongGenerations) {
-    const Tree truth = grown("oak", 1000, {});
+    const Tree truth = grown_with("oak", 1000, {});
     Tree found = found_again(truth, 1);
     EXPECT_EQ(compare_generations(truth, found).alone, compare_generations(truth, found).bearing)
         << "each branch is found as one branch of its own";

@@ -15,7 +15,7 @@
 namespace kokage {
 namespace {
 
-Tree grown(const char* species, int leaves = 6000) {
+Tree grown_leafy(const char* species, int leaves = 6000) {
     GrowthParameters p = find_species(species).parameters;
     p.leaves = leaves;
     return grow(p);
@@ -47,7 +47,7 @@ std::size_t triangles_of(const Tree& tree, TreePartKind kind) {
 
 TEST(LevelsOfDetail, KeepLeafAreaAndHaveFewerLeavesAndTriangles) {
     for (const char* species : {"oak", "spruce", "aspen"}) {
-        const Tree full = grown(species);
+        const Tree full = grown_leafy(species);
         const LevelOfDetail zero = level_of_detail(full, 0);
         EXPECT_EQ(zero.tree.leaves.size(), full.leaves.size());
         std::size_t group = 1, bark = triangles_of(full, TreePartKind::bark);
@@ -70,7 +70,7 @@ TEST(LevelsOfDetail, KeepLeafAreaAndHaveFewerLeavesAndTriangles) {
 
 // The height and distance from the trunk at which a tenth, half and nine tenths of the leaf area lie.
 TEST(LevelsOfDetail, KeepTheLeavesDistributionInSpace) {
-    const Tree full = grown("oak");
+    const Tree full = grown_leafy("oak");
     const auto quantiles = [](const Tree& tree, const auto& measure) {
         const std::vector<double> areas = areas_of(tree);
         std::vector<std::pair<double, double>> values;
@@ -142,7 +142,7 @@ TEST(LevelsOfDetail, KeepBarkAreaInSummerAndWinter) {
 }
 
 TEST(LevelsOfDetail, EveryLeafIsStoodForByOneNearIt) {
-    const Tree full = grown("oak");
+    const Tree full = grown_leafy("oak");
     const LevelOfDetail lod = level_of_detail(full, 2);
     std::map<std::uint32_t, int> group_size;
     double furthest = 0;
@@ -160,7 +160,7 @@ TEST(LevelsOfDetail, EveryLeafIsStoodForByOneNearIt) {
 
 // The slow twin: sums over groups, one group at a time.
 TEST(LevelsOfDetail, SidesHaveTheMeanLightOfThoseTheyStandFor) {
-    const Tree full = grown("beech", 1500);
+    const Tree full = grown_leafy("beech", 1500);
     const ShadedAttributes light = noise_light(full);
     const std::vector<double> areas = areas_of(full);
     for (int level = 1; level <= 3; ++level) {
@@ -223,7 +223,7 @@ TEST(LevelsOfDetail, FrontsThatLookAwayFromOneAnotherAreTurned) {
 
 TEST(LevelsOfDetail, AreWrittenAndReadBack) {
     const TemporaryFolder folder;
-    const Tree full = grown("birch", 900);
+    const Tree full = grown_leafy("birch", 900);
     const LevelOfDetail lod = level_of_detail(full, 2);
     const ShadedAttributes light = transfer_light(full, noise_light(full), lod);
     write_tree(folder / "lod.glb", lod.tree, &light);
@@ -247,7 +247,7 @@ TEST(LevelsOfDetail, KeepLeafAreaOfOtherProgramsTrees) {
 
 TEST(LevelsOfDetail, TakeTreesOfAnyKind) {
     for (const int leaves : {1, 2, 10}) {
-        const Tree tiny = grown("oak", leaves);
+        const Tree tiny = grown_leafy("oak", leaves);
         for (int level = 0; level <= 8; ++level) {
             const LevelOfDetail lod = level_of_detail(tiny, level);
             EXPECT_GE(lod.tree.leaves.size(), 1u);

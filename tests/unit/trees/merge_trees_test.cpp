@@ -8,7 +8,7 @@
 namespace kokage {
 namespace {
 
-Tree small_oak(std::uint64_t seed) {
+Tree seeded_oak(std::uint64_t seed) {
     GrowthParameters parameters = find_species("oak").parameters;
     parameters.leaves = 60;
     parameters.seed = seed;
@@ -41,7 +41,7 @@ TEST(MergeTrees, PointsAreScaledTurnedAndMoved) {
 }
 
 TEST(MergeTrees, EveryLeafAndPatchOfBothIsThere) {
-    const Tree one = small_oak(1), two = small_oak(2);
+    const Tree one = seeded_oak(1), two = seeded_oak(2);
     Tree all;
     TreePlacement there;
     there.at = {7, 1, 2};
@@ -80,7 +80,7 @@ TEST(MergeTrees, EveryLeafAndPatchOfBothIsThere) {
 }
 
 TEST(MergeTrees, FarFromTheOriginNothingIsLost) {
-    const Tree tree = small_oak(1);
+    const Tree tree = seeded_oak(1);
     Tree near, far;
     TreePlacement placement;
     add_with_materials(near, tree, placement);
@@ -92,7 +92,7 @@ TEST(MergeTrees, FarFromTheOriginNothingIsLost) {
 }
 
 TEST(MergeTrees, MaterialsWithoutNumbersAreRefused) {
-    const Tree tree = small_oak(1);
+    const Tree tree = seeded_oak(1);
     Tree all;
     EXPECT_THROW(add_tree(all, tree, {}, {}), InputError);
 }

@@ -3,6 +3,7 @@
 #include "common/scene/image_layers.h"
 #include "common/services/parallel.h"
 #include "tests/support/program_run.h"
+#include "tests/unit/viewer/words.h"
 #include "viewer/scene/scene_memory.h"
 
 #include <algorithm>
@@ -14,14 +15,8 @@
 namespace kokage {
 namespace {
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 
-Words joined(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
-
-const Words kSmallOak = {"render", "oak", "--leaves", "200", "--size", "64x48", "--samples", "4"};
+const Words kSmallRender = {"render", "oak", "--leaves", "200", "--size", "64x48", "--samples", "4"};
 
 void write(const std::filesystem::path& path, const std::string& text) {
     std::ofstream(path, std::ios::binary | std::ios::trunc) << text;
@@ -168,7 +163,7 @@ TEST(Render, GivesTheSameBitsForAnyNumberOfThreads) {
 
 TEST(Render, DrawsJustATreeAndNamesItAfterIt) {
     TemporaryFolder folder;
-    const ProgramRun run = run_kokage(joined(kSmallOak, {"--sun", "250,12"}), folder.path());
+    const ProgramRun run = run_kokage(joined(kSmallRender, {"--sun", "250,12"}), folder.path());
     ASSERT_EQ(run.status, 0) << run.errors;
     EXPECT_EQ(folder.files(), Words({"oak.png"}));
     const Image picture = load_image(folder / "oak.png");
@@ -177,8 +172,8 @@ TEST(Render, DrawsJustATreeAndNamesItAfterIt) {
 
 TEST(Render, ComparesRadianceOfLayeredPictures) {
     TemporaryFolder folder;
-    ASSERT_EQ(run_kokage(joined(kSmallOak, {"-o", "a.exr"}), folder.path()).status, 0);
-    ASSERT_EQ(run_kokage(joined(kSmallOak, {"-o", "b.exr", "--method", "path-traced"}), folder.path()).status, 0);
+    ASSERT_EQ(run_kokage(joined(kSmallRender, {"-o", "a.exr"}), folder.path()).status, 0);
+    ASSERT_EQ(run_kokage(joined(kSmallRender, {"-o", "b.exr", "--method", "path-traced"}), folder.path()).status, 0);
     const ProgramRun same = run_kokage({"compare", "a.exr", "a.exr"}, folder.path());
     ASSERT_EQ(same.status, 0) << same.errors;
     EXPECT_NE(same.output.find("mean relative error  0 %"), std::string::npos) << same.output;
@@ -296,7 +291,7 @@ TEST(Render, FilesThatOutgrowTheirLimitAreTakenAway) {
     limited.file_size = 2000;
     for (const char* picture : {"a.exr", "a.png"}) {
         write(folder / picture, "former");
-        const ProgramRun run = run_kokage(joined(kSmallOak, {"-o", picture, "--quiet"}), folder.path(), limited);
+        const ProgramRun run = run_kokage(joined(kSmallRender, {"-o", picture, "--quiet"}), folder.path(), limited);
         EXPECT_EQ(run.status, 2) << picture;
         EXPECT_TRUE(is_one_complaint(run.errors));
         EXPECT_NE(run.errors.find(picture), std::string::npos) << run.errors;

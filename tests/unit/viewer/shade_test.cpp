@@ -1,6 +1,7 @@
 // `kokage shade` as a user runs it, on small trees.
 #include "common/scene/image_file.h"
 #include "tests/support/program_run.h"
+#include "tests/unit/viewer/words.h"
 
 #include <algorithm>
 #include <cmath>
@@ -10,24 +11,18 @@
 namespace kokage {
 namespace {
 using Json = nlohmann::json;
-using Words = std::vector<std::string>;
 
-Words joined(Words words, const Words& more) {
-    words.insert(words.end(), more.begin(), more.end());
-    return words;
-}
-
-const Words kSmallOak = {"shade", "oak", "--leaves", "200"},
+const Words kSmallShade = {"shade", "oak", "--leaves", "200"},
             kSmallPicture = {"--image-size", "48x32", "--samples", "1"};
 
 /// A small oak, quickly, with a picture; further words are added.
 Words small_shade(const Words& more) {
-    return joined(joined(kSmallOak, kSmallPicture), more);
+    return joined(joined(kSmallShade, kSmallPicture), more);
 }
 
 Json report_of(const TemporaryFolder& folder, const Words& more) {
     const bool draws = std::find(more.begin(), more.end(), "--image") != more.end();
-    const Words words = joined(draws ? small_shade(more) : joined(kSmallOak, more), {"--report", "r.json"});
+    const Words words = joined(draws ? small_shade(more) : joined(kSmallShade, more), {"--report", "r.json"});
     const ProgramRun run = run_kokage(words, folder.path());
     EXPECT_EQ(run.status, 0) << run.errors;
     return run.status == 0 ? Json::parse(read_text(folder / "r.json")) : Json();
