@@ -21,7 +21,7 @@ std::string refusal(const ReliefMesh& mesh, const ReliefDepth& depth = {}) {
     return "";
 }
 
-/// Two triangles over a shell_square of 2 x 3 m in the plane z = 0, tiles of 0.5 x 0.25 m, v downwards.
+/// Two triangles over a square of 2 x 3 m in the plane z = 0, tiles of 0.5 x 0.25 m, v downwards.
 SurfaceArrays shell_square() {
     SurfaceArrays s;
     s.positions = {{0, 0, 0}, {2, 0, 0}, {2, 3, 0}, {0, 3, 0}};
