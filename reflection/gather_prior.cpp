@@ -14,6 +14,9 @@ constexpr double kRaysOfSpread = 200;
 /// corrections do from patch to patch.
 constexpr double kUsualRays = 16, kLeastDegrees = 20;
 constexpr double kFewestRays = 2, kMostRays = 1000;
+/// How far the prior may draw a place from its own rays' mean, in that mean's standard deviations, where these are
+/// known: few rays are not spread as many are, a single bright one among them is no sign of a bright place.
+constexpr double kFarthest = 1, kRaysToLimit = 16;
 
 /// Of gathered light over expected light.
 struct Spread {
@@ -41,9 +44,13 @@ struct Spread {
         between += scale * other.between;
         of_one_ray += scale * other.of_one_ray;
     }
+    bool is_known() const { return degrees > kLeastDegrees && within > 0; }
+    double deviation_of_ray() const {
+        return is_known() ? std::sqrt(within / degrees) : std::numeric_limits<double>::infinity();
+    }
     /// By the method of moments.
     double rays() const {
-        if (!(degrees > kLeastDegrees) || !(within > 0))
+        if (!is_known())
             return kUsualRays;
         const double of_ray = within / degrees, of_place = std::max(0., between - of_ray * of_one_ray) / weight;
         return std::clamp(of_ray / std::max(of_place, 1e-12), kFewestRays, kMostRays);
@@ -99,17 +106,23 @@ std::vector<GatherPrior> fit_gather_priors(std::span<const PlaceSums> members, s
         if (of_look.weight > 0)
             spreads[k].add(of_look, std::min(1., kRaysOfSpread / of_look.weight));
         priors[k].rays = spreads[k].rays();
+        priors[k].deviation = spreads[k].deviation_of_ray();
     }
     return priors;
 }
 
 glm::vec3 corrected_light(const glm::vec3& light, const PlaceSums& sums, const GatherPrior& prior) {
     glm::vec3 result(0.f);
-    const double own = double(sums.weight), rays = own + prior.rays;
+    const double own = double(sums.weight), independent = own * own / double(sums.squared_weights);
+    const double farthest = independent >= kRaysToLimit ? kFarthest * prior.deviation / std::sqrt(independent)
+                                                        : std::numeric_limits<double>::infinity();
     for (std::size_t c = 0; c < 3; ++c) {
-        const double mean = double(sums.solved[c]) / own;
-        const double gathered = double(sums.gathered[c]) + prior.rays * mean * prior.ratio[c];
-        result[c] = float(mean > 0 ? double(light[c]) * gathered / (mean * rays) : double(sums.gathered[c]) / own);
+        const double solved = double(sums.solved[c]) / own, gathered = double(sums.gathered[c]) / own,
+                     expected = solved * prior.ratio[c];
+        const double mean = (own * gathered + prior.rays * expected) / (own + prior.rays), drawn = mean - gathered;
+        const double limited =
+            std::abs(drawn) > farthest * expected ? gathered + std::copysign(farthest * expected, drawn) : mean;
+        result[c] = float(solved > 0 ? double(light[c]) * limited / solved : gathered);
     }
     return result;
 }

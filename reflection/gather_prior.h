@@ -4,11 +4,14 @@
 // Rays from a patch tell its light with noise; the solution tells it without, but of the whole patch, not of the part
 // that is seen. Patches that are alike (one look and side, seen to a like share) tell by how much the two differ in
 // the mean (`ratio`) and how widely (beyond what noise explains). The solution, times the ratio, then counts as so many
-// rays as make both errors weigh alike: hundreds for leaves that are seen whole, few for those that peep out. Private
-// to reflection.
+// rays as make both errors weigh alike: hundreds for leaves that are seen whole, few for those that peep out. Places
+// that are unlike all others of their class (the knob of a lid) are not drawn farther from what their own rays say than
+// these may be off (Efron and Morris, "Limiting the Risk of Bayes and Empirical Bayes Estimators", 1971). Private to
+// reflection.
 #include "common/types.h"
 
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -27,6 +30,8 @@ struct PlaceSums {
 struct GatherPrior {
     glm::dvec3 ratio{1.}; ///< gathered over solved
     double rays = 16;     ///< that the solution counts as
+    /// Standard deviation of one ray's light, over what is expected of it; infinite: not known.
+    double deviation = std::numeric_limits<double>::infinity();
 };
 
 /// `members[k]` is in class `class_of[k]` < `classes`; classes in blocks of `classes_of_look` belong together and lend
