@@ -29,6 +29,13 @@ std::uint32_t most_frequent_leaf(std::span<const CameraSample> samples) {
 
 } // namespace
 
+std::vector<std::uint32_t> SquareSamples::parts() const {
+    std::vector<std::uint32_t> met;
+    for (const CameraSample& sample : shaded)
+        met.push_back(sample.seen.part);
+    return met;
+}
+
 Film::Film(const PictureOptions& options, const CameraFrame& frame)
     : width_(options.width), height_(options.height), channels_(options.layers ? kWithLayers : kPlain),
       options_(options), frame_(frame), filter_(filter_table()) {
@@ -94,9 +101,9 @@ void Film::add_to_neighbours(Band& band, int x, int row, const Weights& weights,
         }
 }
 
-/// Rays of a square that met the same.
-struct Film::Part {
-    std::uint32_t part;
+/// Rays of a square that look alike.
+struct Film::Class {
+    std::uint32_t number;
     float shaded = 0;  ///< rays
     Values values{};   ///< their sum
     Weights weights{}; ///< by all rays less by the shaded ones
@@ -105,10 +112,10 @@ struct Film::Part {
         for (std::size_t k = 0; k < more.size(); ++k)
             weights[k] += scale * more[k];
     }
-    void add_shaded(float rays, const Values& sum, std::size_t channels) {
+    void add_shaded(const Values& more, float rays, std::size_t channels) {
         shaded += rays;
         for (std::size_t k = 0; k < channels; ++k)
-            values[k] += sum[k];
+            values[k] += more[k];
     }
     Values mean(std::size_t channels) const {
         Values result{};
@@ -123,59 +130,58 @@ void Film::add_alone(Band& band, int x, int row, std::span<const CameraSample> s
         add_to_neighbours(band, x, row, weights_at(sample.place), 1 / float(samples.size()), values_of(sample.seen));
 }
 
-void Film::add_covered(Band& band, int x, int row, std::span<const CameraSample> samples,
-                       std::span<const CoverageRay> coverage) const {
-    std::vector<Part> parts;
-    const auto of = [&](std::uint32_t part) -> Part& {
-        for (Part& known : parts)
-            if (known.part == part)
+void Film::add_covered(Band& band, int x, int row, const SquareSamples& samples) const {
+    const auto shaded = float(samples.shaded.size()), all = shaded + float(samples.coverage.size());
+    const CoverageClasses numbers(samples.coverage, samples.parts());
+    std::vector<Class> classes;
+    const auto class_of = [&](std::uint32_t part) -> Class& {
+        const std::uint32_t number = numbers.of(part);
+        for (Class& known : classes)
+            if (known.number == number)
                 return known;
-        return parts.emplace_back(Part{.part = part});
+        return classes.emplace_back(Class{.number = number});
     };
-    const float by_all = 1 / float(samples.size() + coverage.size()), by_shaded = 1 / float(samples.size());
-    Part surfaces{.part = seen_part::kFirstSurface}, all{.part = seen_part::kSurroundings};
-    for (const CameraSample& sample : samples) {
+    for (const CameraSample& sample : samples.shaded) {
         const Weights weights = weights_at(sample.place);
         const Values values = values_of(sample.seen);
-        add_to_neighbours(band, x, row, weights, by_shaded, values);
-        Part& part = of(sample.seen.part);
-        part.add(weights, by_all - by_shaded);
-        part.add_shaded(1, values, channels_);
-        all.add_shaded(1, values, channels_);
-        if (sample.seen.surface)
-            surfaces.add_shaded(1, values, channels_);
+        add_to_neighbours(band, x, row, weights, 1 / shaded, values);
+        Class& of = class_of(sample.seen.part);
+        of.add(weights, 1 / all - 1 / shaded);
+        of.add_shaded(values, 1, channels_);
     }
-    for (const CoverageRay& ray : coverage)
-        of(ray.part).add(weights_at(ray.place), by_all);
-    for (const Part& part : parts) {
-        // What no shaded ray met looks as other surfaces do, or as anything.
-        const bool like_surfaces = part.part >= seen_part::kFirstSurface && surfaces.shaded > 0;
-        const Part& seen = part.shaded > 0 ? part : like_surfaces ? surfaces : all;
-        add_to_neighbours(band, x, row, part.weights, 1, seen.mean(channels_));
-    }
+    for (const CameraSample& look : samples.looks)
+        class_of(look.seen.part).add_shaded(values_of(look.seen), 1, channels_);
+    for (const CoverageRay& ray : samples.coverage)
+        class_of(ray.part).add(weights_at(ray.place), 1 / all);
+    Class any{.number = 0};
+    for (const Class& of : classes)
+        any.add_shaded(of.values, of.shaded, channels_);
+    // At edges a ray that was traced again among others may meet the neighbour: then its class has no look.
+    for (const Class& of : classes)
+        add_to_neighbours(band, x, row, of.weights, 1, (of.shaded > 0 ? of : any).mean(channels_));
 }
 
-void Film::add(int band, int x, int y, std::span<const CameraSample> samples, std::span<const CoverageRay> coverage) {
+void Film::add(int band, int x, int y, const SquareSamples& samples) {
     Band& sums = bands_[std::size_t(band)];
     const int rows = end_row(band) - first_row(band);
     if (sums.sums.empty())
         sums.sums.assign(std::size_t(rows + 2) * std::size_t(width_) * channels_, 0.f);
-    if (coverage.empty())
-        add_alone(sums, x, y - first_row(band), samples);
+    if (samples.coverage.empty())
+        add_alone(sums, x, y - first_row(band), samples.shaded);
     else
-        add_covered(sums, x, y - first_row(band), samples, coverage);
+        add_covered(sums, x, y - first_row(band), samples);
     if (channels_ != kWithLayers || x < 0 || x >= width_)
         return;
     if (sums.nearest.empty())
         sums.nearest.resize(std::size_t(rows) * std::size_t(width_));
     Nearest& nearest = sums.nearest[std::size_t(y - first_row(band)) * std::size_t(width_) + std::size_t(x)];
-    for (const CameraSample& sample : samples)
+    for (const CameraSample& sample : samples.shaded)
         if (const float depth = sample.seen.distance * glm::dot(sample.direction, frame_.forward);
             depth < nearest.depth) {
             nearest.depth = depth;
             nearest.normal = sample.seen.normal;
         }
-    nearest.leaf = most_frequent_leaf(samples);
+    nearest.leaf = most_frequent_leaf(samples.shaded);
 }
 
 void Film::store(Picture& picture, int x, int y) const {

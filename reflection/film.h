@@ -1,6 +1,6 @@
 #pragma once
 // Camera rays become pixels: every ray counts for all pixels within reach of the pixel filter. Private to reflection.
-#include "reflection/seen_by_ray.h"
+#include "reflection/coverage_classes.h"
 
 #include <array>
 #include <cstdint>
@@ -16,21 +16,27 @@ struct CameraSample {
     SeenByRay seen;
 };
 
-/// A first ray that is not shaded.
-struct CoverageRay {
-    glm::vec2 place{0.5f};
-    std::uint32_t part = 0; ///< that it met: SeenByRay's
+/// All rays of a square. Coverage rays may be none.
+struct SquareSamples {
+    std::span<const CameraSample> shaded;
+    std::span<const CoverageRay> coverage;
+    /// One coverage ray of each class (CoverageClasses) that is not among the shaded ones, which was shaded to tell
+    /// what its class looks like, and counts for nothing else.
+    std::span<const CameraSample> looks;
+
+    /// That the shaded rays met.
+    std::vector<std::uint32_t> parts() const;
 };
 
 /// Pixel = sum of f L / N over the rays of its own and its eight neighbours' squares, over the sum of f / N: f is the
 /// pixel filter about the pixel's centre (sampling.h), N how many rays the square that a ray starts from has. A ray
 /// that serves nine pixels leaves less than half the variance of one that is drawn by the filter for one. Where a
-/// square has coverage rays as well, all its rays tell how much of it each part takes, and the shaded ones what that
-/// part looks like: every part's mean radiance is added times what its share by all rays has more than its share by the
-/// shaded ones, pixel by pixel (a control variate; shading apart from coverage as in Ragan-Kelley et al., "Decoupled
-/// Sampling for Graphics Pipelines", 2011). Rows come in bands, each of which adds up by itself, so that the result
-/// does not depend on threads. Radiance, its parts, albedo and subject are filtered; depth, normal and leaf are of the
-/// pixel's own square.
+/// square has coverage rays as well, all its rays tell how much of it each class of parts takes, and the shaded ones
+/// what that looks like: every class's mean radiance is added times what its share by all rays has more than its share
+/// by the shaded ones, pixel by pixel (a control variate; shading apart from coverage as in Ragan-Kelley et al.,
+/// "Decoupled Sampling for Graphics Pipelines", 2011). Rows come in bands, each of which adds up by itself, so that the
+/// result does not depend on threads. Radiance, its parts, albedo and subject are filtered; depth, normal and leaf are
+/// of the pixel's own square.
 class Film {
   public:
     static constexpr int kBandRows = 16;
@@ -44,7 +50,7 @@ class Film {
     /// Bytes of a whole one.
     static double bytes(const PictureOptions& options);
     /// All rays of a square of a band. Bands at once, squares of a band one after another in one order.
-    void add(int band, int x, int y, std::span<const CameraSample> samples, std::span<const CoverageRay> coverage = {});
+    void add(int band, int x, int y, const SquareSamples& samples);
     /// When all is added.
     Picture picture() const;
 
@@ -64,7 +70,7 @@ class Film {
     using Values = std::array<float, kWithLayers>;
     /// Of the pixels that a square's rays reach, row by row.
     using Weights = std::array<float, 9>;
-    struct Part;
+    struct Class;
 
     glm::vec3 filter_at(float place) const;
     Weights weights_at(const glm::vec2& place) const;
@@ -72,8 +78,7 @@ class Film {
     float* sum(Band& band, int x, int row) const;
     void add_to_neighbours(Band& band, int x, int row, const Weights& weights, float scale, const Values& values) const;
     void add_alone(Band& band, int x, int row, std::span<const CameraSample> samples) const;
-    void add_covered(Band& band, int x, int row, std::span<const CameraSample> samples,
-                     std::span<const CoverageRay> coverage) const;
+    void add_covered(Band& band, int x, int row, const SquareSamples& samples) const;
     void store(Picture& picture, int x, int y) const;
 
     int width_, height_;

@@ -158,7 +158,7 @@ class PictureDrawing {
         for (int row = 0; row < rows; ++row)
             for (int x = 0; x < columns; ++x)
                 squares.push_back({x - 1, first_row + row, 0, std::uint32_t(first_)});
-        std::vector<CameraSample> begun, more, samples;
+        std::vector<CameraSample> begun, more;
         begun.reserve(squares.size() * first);
         trace(squares, scratch, begun);
         const std::vector<RadianceSpread> spreads = spreads_of(begun);
@@ -172,25 +172,66 @@ class PictureDrawing {
             trace_coverage(covered, scratch);
             more.clear();
             trace(rest, scratch, more);
-            shaded_ += first * rest.size() + more.size();
-            covering_ += scratch.coverage.size();
-            auto next = more.begin();
-            auto cover = scratch.coverage.begin();
-            for (std::size_t x = 0; x < rest.size(); ++x) {
-                const auto from = begun.begin() + std::ptrdiff_t(first * squares_before(row, columns, x));
-                samples.assign(from, from + std::ptrdiff_t(first));
-                const auto end = next + std::ptrdiff_t(rest[x].end - rest[x].begin);
-                samples.insert(samples.end(), next, end);
-                next = end;
-                const auto cover_end = cover + std::ptrdiff_t(covered[x].end - covered[x].begin);
-                film.add(band, rest[x].x, rest[x].y, samples, {cover, cover_end});
-                cover = cover_end;
-            }
+            RowSamples all = row_samples(row, rest, covered, begun, more, scratch.coverage);
+            add_looks(all, covered, scratch);
+            for (std::size_t x = 0; x < rest.size(); ++x)
+                film.add(band, rest[x].x, rest[x].y, all.of_square(x));
+            shaded_ += all.shaded.size() + all.looks.size();
+            covering_ += all.coverage.size();
         }
     }
 
-    static std::size_t squares_before(int row, int columns, std::size_t x) {
-        return std::size_t(row) * std::size_t(columns) + x;
+    /// A row's rays, square by square.
+    struct RowSamples {
+        std::vector<CameraSample> shaded, looks;
+        std::span<const CoverageRay> coverage;
+        std::vector<std::size_t> shaded_ends{0}, coverage_ends{0},
+            looks_ends{0}; ///< of the squares, from the second on
+
+        SquareSamples of_square(std::size_t x) const {
+            const auto part = [&](const auto& values, const std::vector<std::size_t>& ends) {
+                return std::span(values).subspan(ends[x], ends[x + 1] - ends[x]);
+            };
+            return {part(shaded, shaded_ends), part(coverage, coverage_ends),
+                    looks_ends.size() > x + 1 ? part(looks, looks_ends) : std::span<const CameraSample>()};
+        }
+    };
+
+    RowSamples row_samples(int row, const std::vector<Square>& rest, const std::vector<Square>& covered,
+                           std::span<const CameraSample> begun, std::span<const CameraSample> more,
+                           std::span<const CoverageRay> coverage) const {
+        RowSamples all;
+        all.coverage = coverage;
+        const auto first = std::size_t(first_);
+        std::size_t next = 0;
+        for (std::size_t x = 0; x < rest.size(); ++x) {
+            const auto of_begun = begun.subspan(first * (std::size_t(row) * rest.size() + x), first),
+                       of_more = more.subspan(next, rest[x].end - rest[x].begin);
+            all.shaded.insert(all.shaded.end(), of_begun.begin(), of_begun.end());
+            all.shaded.insert(all.shaded.end(), of_more.begin(), of_more.end());
+            all.shaded_ends.push_back(all.shaded.size());
+            all.coverage_ends.push_back(all.coverage_ends.back() + covered[x].end - covered[x].begin);
+            next += of_more.size();
+        }
+        return all;
+    }
+
+    /// Shades a coverage ray of each class of a square that it has no shaded ray of.
+    void add_looks(RowSamples& all, const std::vector<Square>& covered, DrawingScratch& scratch) const {
+        std::vector<Square> squares;
+        std::vector<std::size_t> ends{0};
+        for (std::size_t x = 0; x < covered.size(); ++x) {
+            const SquareSamples samples = all.of_square(x);
+            const std::vector<std::uint32_t> parts = samples.parts();
+            for (const std::size_t ray :
+                 rays_of_unshaded_classes(CoverageClasses(samples.coverage, parts), samples.coverage, parts)) {
+                const auto number = covered[x].begin + std::uint32_t(ray);
+                squares.push_back({covered[x].x, covered[x].y, number, number + 1});
+            }
+            ends.push_back(squares.size());
+        }
+        trace(squares, scratch, all.looks);
+        all.looks_ends = std::move(ends);
     }
 
     /// Coverage rays of `squares`, in their order.

@@ -93,35 +93,47 @@ RadianceSpread spread_of(std::span<const CameraSample> samples) {
     RadianceSpread spread;
     if (samples.size() < 2)
         return spread;
-    struct Part {
+    // What one ray alone met may be small: such parts are one class (coverage_classes.h).
+    struct Class {
         std::uint32_t part;
         double count = 0;
         glm::dvec3 sum{0.};
+
+        bool is_of_its_own() const { return part < seen_part::kFirstSurface || count > 1; }
     };
-    std::vector<Part> parts;
-    const auto of = [&](const CameraSample& sample) -> Part& {
-        for (Part& known : parts)
+    std::vector<Class> classes;
+    const auto of = [&](const CameraSample& sample) -> Class& {
+        for (Class& known : classes)
             if (known.part == sample.seen.part)
                 return known;
-        return parts.emplace_back(Part{.part = sample.seen.part});
+        return classes.emplace_back(Class{.part = sample.seen.part});
     };
     glm::dvec3 mean(0.);
     for (const CameraSample& sample : samples) {
         const glm::dvec3 radiance = displayable(sample.seen.radiance);
-        Part& part = of(sample);
-        part.count += 1;
-        part.sum += radiance;
+        Class& met = of(sample);
+        met.count += 1;
+        met.sum += radiance;
         mean += radiance / double(samples.size());
     }
+    Class small{.part = seen_part::kFirstSurface};
+    std::size_t large = 0;
+    for (const Class& met : classes)
+        if (met.is_of_its_own()) {
+            ++large;
+        } else {
+            small.count += met.count;
+            small.sum += met.sum;
+        }
     for (const CameraSample& sample : samples) {
-        const Part& part = of(sample);
+        const Class &met = of(sample), &alike = met.is_of_its_own() ? met : small;
         const glm::dvec3 radiance = displayable(sample.seen.radiance), apart = radiance - mean,
-                         within = radiance - part.sum / part.count;
+                         within = radiance - alike.sum / alike.count;
         spread.all += apart * apart;
         spread.in_parts += within * within;
     }
     spread.all_freedom = double(samples.size() - 1);
-    spread.in_parts_freedom = double(samples.size() - parts.size());
+    spread.in_parts_freedom = double(samples.size() - large - (small.count > 0 ? 1 : 0));
     return spread;
 }
 

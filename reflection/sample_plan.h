@@ -7,7 +7,7 @@
 namespace kokage {
 
 /// How radiance varies among rays of a square, or of some squares: sums of squares about the squares' means, and about
-/// the means of the parts that were met, over degrees of freedom.
+/// the means of the parts that were met (all of which one ray alone met as one), over degrees of freedom.
 struct RadianceSpread {
     static constexpr int kMostCoverageRays = 4;
 

@@ -43,7 +43,7 @@ Picture exposed(int width, int height, const Radiance& radiance, const Count& co
                             glm::vec3(radiance(float(x) + sample.place.x, float(y) + sample.place.y)));
                         samples.push_back(sample);
                     }
-                film.add(band, x, y, samples);
+                film.add(band, x, y, {samples, {}, {}});
             }
     return film.picture();
 }
@@ -117,7 +117,7 @@ Picture edge_picture(const Edge& edge, int shaded, int coverage) {
                     else
                         more.push_back({sample.place, sample.seen.part});
                 }
-                film.add(band, x, y, samples, more);
+                film.add(band, x, y, {samples, more, {}});
             }
     return film.picture();
 }
@@ -145,28 +145,94 @@ TEST(Film, CoverageKeepsTheShadedRaysOwnSlopeWithinAPart) {
     EXPECT_LT(worst_error(steep, 64, 3), worst_error(steep, 64, 0));
 }
 
-TEST(Film, WhatNoShadedRayMetLooksAsSurfacesDoOrAsAnything) {
+/// A crown of many small parts: surroundings take a tenth of each square, one large part six tenths, and thirty small
+/// ones, which are brighter, a hundredth each. They begin elsewhere in every square, because the filters of
+/// neighbouring pixels don't add up to quite the same everywhere.
+struct SmallParts {
+    static constexpr double kMean = 0.1 * 20 + 0.6 * 1 + 0.3 * 5;
+
+    static CameraSample sample(const glm::vec2& place, float begin) {
+        CameraSample sample;
+        sample.place = place;
+        const float at = glm::fract(place.x + begin);
+        if (at < 0.1f) {
+            sample.seen = SeenByRay::surroundings(glm::vec3(20));
+            return sample;
+        }
+        const bool is_large = at < 0.7f;
+        sample.seen.surface = true;
+        sample.seen.part = seen_part::of_patch(is_large ? 0 : 1 + std::uint32_t((at - 0.7f) * 100), true);
+        sample.seen.radiance = glm::vec3(is_large ? 1.f : 5.f);
+        return sample;
+    }
+};
+
+TEST(Film, CoverageFavoursNeitherLargePartsNorThoseThatShadedRaysHappenToMeet) {
+    constexpr int kEdge = 48;
+    constexpr std::uint32_t kShaded = 4, kAll = 20;
+    const PictureOptions options = small_picture(kEdge, kEdge);
+    Film film(options, camera_frame(camera_at({0, 0, 1}, {0, 0, 0}), kEdge, kEdge));
+    for (int band = 0; band < film.band_count(); ++band)
+        for (int y = film.first_row(band); y < film.end_row(band); ++y)
+            for (int x = -1; x <= kEdge; ++x) {
+                std::vector<CameraSample> shaded, looks;
+                std::vector<CoverageRay> coverage;
+                std::vector<std::uint32_t> parts;
+                const auto at = [&](std::uint32_t k) {
+                    return SmallParts::sample(evenly_spread(k, std::uint32_t(61 * x + 977 * y)),
+                                              0.618f * float(x + 57 * y + 100));
+                };
+                for (std::uint32_t k = 0; k < kAll; ++k)
+                    if (const CameraSample sample = at(k); k < kShaded) {
+                        shaded.push_back(sample);
+                        parts.push_back(sample.seen.part);
+                    } else {
+                        coverage.push_back({sample.place, sample.seen.part});
+                    }
+                for (const std::size_t ray : rays_of_unshaded_classes({coverage, parts}, coverage, parts))
+                    looks.push_back(at(kShaded + std::uint32_t(ray)));
+                film.add(band, x, y, {shaded, coverage, looks});
+            }
+    double sum = 0;
+    const Picture picture = film.picture();
+    for (const float value : picture.radiance.pixels)
+        sum += double(value);
+    EXPECT_NEAR(sum / double(picture.radiance.pixels.size()) / SmallParts::kMean, 1, 0.01);
+}
+
+TEST(Film, AClassWithoutAnyLookIsAsBrightAsTheSquare) {
     const PictureOptions options = small_picture(1, 1);
-    const CameraFrame frame = camera_frame(camera_at({0, 0, 1}, {0, 0, 0}), 1, 1);
-    const auto pixel = [&](bool with_surface) {
-        Film film(options, frame);
-        CameraSample sky, surface;
-        sky.seen = SeenByRay::surroundings(glm::vec3(1));
-        surface.seen.radiance = glm::vec3(5);
-        surface.seen.surface = true;
-        surface.seen.part = seen_part::of_patch(3, true);
-        std::vector<CameraSample> samples{sky};
-        if (with_surface)
-            samples.push_back(surface);
-        const CoverageRay unknown{glm::vec2(0.5f), seen_part::of_patch(7, false)};
-        for (int band = 0; band < film.band_count(); ++band)
-            for (int y = film.first_row(band); y < film.end_row(band); ++y)
-                for (int x = -1; x <= 1; ++x)
-                    film.add(band, x, y, samples, std::vector{unknown, unknown});
-        return film.picture().radiance.at(0, 0)[0];
-    };
-    EXPECT_NEAR(pixel(true), (1 + 3 * 5) / 4., 1e-5); // one of four is sky
-    EXPECT_NEAR(pixel(false), 1, 1e-6);
+    Film film(options, camera_frame(camera_at({0, 0, 1}, {0, 0, 0}), 1, 1));
+    CameraSample sky;
+    sky.seen = SeenByRay::surroundings(glm::vec3(2));
+    const std::vector<CameraSample> shaded{sky};
+    const std::vector<CoverageRay> coverage(3, {glm::vec2(0.5f), seen_part::of_patch(7, false)});
+    for (int band = 0; band < film.band_count(); ++band)
+        for (int y = film.first_row(band); y < film.end_row(band); ++y)
+            for (int x = -1; x <= 1; ++x)
+                film.add(band, x, y, {shaded, coverage, {}});
+    EXPECT_NEAR(film.picture().radiance.at(0, 0)[0], 2, 1e-5);
+}
+
+TEST(CoverageClasses, KeepApartWhatTwoShadedRaysShouldHaveMet) {
+    const std::uint32_t large = seen_part::of_patch(4, true), other_side = seen_part::of_patch(4, false),
+                        small = seen_part::of_patch(9, true);
+    std::vector<CoverageRay> coverage(16, {glm::vec2(0.5f), large});
+    coverage[3].part = coverage[5].part = small;
+    coverage[7].part = other_side;
+    coverage[8].part = seen_part::kSurroundings;
+    const std::vector<std::uint32_t> met(4, large);
+    const CoverageClasses classes(coverage, met); // two of four: ten of twenty
+    EXPECT_EQ(classes.of(large), large);
+    EXPECT_EQ(classes.of(small), classes.of(other_side));
+    EXPECT_EQ(classes.of(small), classes.of(seen_part::of_patch(100, true)));
+    EXPECT_NE(classes.of(small), classes.of(large));
+    EXPECT_EQ(classes.of(seen_part::kSurroundings), seen_part::kSurroundings);
+    EXPECT_EQ(classes.of(seen_part::kGround), seen_part::kGround);
+    EXPECT_EQ(rays_of_unshaded_classes(classes, coverage, met), (std::vector<std::size_t>{3, 8}));
+    const std::vector<std::uint32_t> all{large, other_side, seen_part::kSurroundings};
+    EXPECT_TRUE(rays_of_unshaded_classes(classes, coverage, all).empty());
+    EXPECT_TRUE(rays_of_unshaded_classes(classes, {}, {}).empty());
 }
 
 CameraSample sample_of(std::uint32_t part, float radiance) {
@@ -182,9 +248,11 @@ TEST(RadianceSpread, TellsTheVarianceBetweenPartsFromThatWithin) {
     EXPECT_DOUBLE_EQ(spread.variance().r, (36 + 16 + 16 + 36) / 3.);
     EXPECT_DOUBLE_EQ(spread.variance_in_parts().r, 2);
     EXPECT_DOUBLE_EQ(spread.deviation(0), std::sqrt(104 / 3.));
-    // Parts of one ray each tell nothing about the variance within any; beside others they add to the whole alone.
+    // Surfaces of one ray each are one class, surroundings another.
+    const RadianceSpread small = spread_of(std::vector{sample_of(5, 1), sample_of(7, 11)});
+    EXPECT_EQ(small.variance_in_parts(), small.variance());
     const RadianceSpread alone = spread_of(std::vector{sample_of(0, 1), sample_of(5, 11)});
-    EXPECT_EQ(alone.variance_in_parts(), alone.variance());
+    EXPECT_EQ(alone.variance_in_parts(), alone.variance()); // for want of any other number
     spread.add(alone);
     EXPECT_DOUBLE_EQ(spread.variance().r, (104 + 50) / 4.);
     EXPECT_DOUBLE_EQ(spread.variance_in_parts().r, 2);
