@@ -167,7 +167,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
         }
     }
     sums.give_light(surfaces, *scene.patches, frame);
-    sums.give_lobes(gloss);
+    sums.give_lobes(gloss, *scene.patches, frame);
     maps.give(gloss);
     report.counts.push_back({"gathering rays", traced});
 }

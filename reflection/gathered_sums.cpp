@@ -1,4 +1,5 @@
 #include "reflection/gathered_sums.h"
+#include "reflection/lobe_prior.h"
 #include "reflection/seen_share.h"
 
 #include <algorithm>
@@ -7,15 +8,18 @@
 namespace kokage {
 namespace {
 
-/// How many rays the mean correction of a look's lobes counts as, beside a patch's own: a ray's light varies hardly
-/// more than patches' corrections do.
-constexpr double kLobesOfPrior = 2;
 /// Classes of a look and side, for what is expected of gathered light: tenths that are seen of a patch, and corners.
 constexpr std::uint32_t kShares = 11, kCorners = kShares, kClassesOfLook = kShares + 1;
 /// Rays of a patch (or corner) after which more are not worth their time. A patch that has so many pixels is large: the
 /// eye would miss how its reflections change, so they are traced pixel by pixel.
 constexpr float kEnough = 400;
 constexpr float kLeastWeight = 1e-6f; ///< of a corner, so that no product is too small for a number
+
+/// Of the pixels that a side of a patch would cover with nothing before it; 0 where it would cover none.
+double seen_share(const PatchScene& patches, const Patch& patch, bool front, const CameraFrame& frame, double pixels) {
+    const double could_be_seen = pixels_of_patch(patches, patch, front, frame);
+    return could_be_seen > 0 ? std::clamp(pixels / could_be_seen, 0., 1.) : 0;
+}
 
 } // namespace
 
@@ -79,9 +83,8 @@ std::uint32_t GatheredSums::class_of(std::uint32_t place, const Place& sums, con
     const auto of_side = std::uint32_t(of_places_.places() / 2), number = place % of_side;
     if (number >= patches.patches.size())
         return kClassesOfLook * sums.look + kCorners;
-    const double could_be_seen = pixels_of_patch(patches, patches.patches[number], place < of_side, frame),
-                 is_seen = double(sums.weight) / (sums.passes > 0 ? sums.passes : passes_);
-    const double share = could_be_seen > 0 ? std::clamp(is_seen / could_be_seen, 0., 1.) : 0;
+    const double pixels = double(sums.weight) / (sums.passes > 0 ? sums.passes : passes_),
+                 share = seen_share(patches, patches.patches[number], place < of_side, frame, pixels);
     return kClassesOfLook * sums.look + std::uint32_t(share * (kShares - 1));
 }
 
@@ -104,25 +107,19 @@ void GatheredSums::give_light(SurfaceShading& surfaces, const PatchScene& patche
         [&](std::uint32_t place, const PatchMoments& moments) { surfaces.set_gradient(place, moments.gradient()); });
 }
 
-void GatheredSums::give_lobes(GlossShading& gloss) const {
-    struct Mean {
-        glm::dvec3 correction{0.};
-        double weight = 0;
-    };
-    std::vector<Mean> of_looks;
-    of_lobes_.for_each([&](std::uint32_t, const Lobe& lobe) {
-        of_looks.resize(std::max<std::size_t>(of_looks.size(), lobe.look + 1));
-        of_looks[lobe.look].correction += glm::dvec3(lobe.correction);
-        of_looks[lobe.look].weight += double(lobe.weight);
-    });
+void GatheredSums::give_lobes(GlossShading& gloss, const PatchScene& patches, const CameraFrame& frame) const {
+    std::vector<LobeSums> seen;
     of_lobes_.for_each([&](std::uint32_t place, const Lobe& lobe) {
-        if (lobe.is_large)
-            return;
-        const Mean& all = of_looks[lobe.look];
-        const glm::dvec3 prior = kLobesOfPrior * all.correction / all.weight,
-                         correction = (glm::dvec3(lobe.correction) + prior) / (double(lobe.weight) + kLobesOfPrior);
-        gloss.set_light_of_patch(place, glm::max(lobe.open / lobe.weight + glm::vec3(correction), glm::vec3(0.f)),
-                                 moments_of_lobes_.find(place)->gradient());
+        const double pixels = double(lobe.weight) / passes_;
+        seen.push_back(lobe);
+        seen.back().seen_share = float(seen_share(patches, patches.patches[place / 2], place % 2 == 0, frame, pixels));
+    });
+    const LobePrior prior(seen);
+    auto sums = seen.begin();
+    of_lobes_.for_each([&](std::uint32_t place, const Lobe& lobe) {
+        if (!lobe.is_large)
+            gloss.set_light_of_patch(place, prior.light(*sums), moments_of_lobes_.find(place)->gradient());
+        ++sums;
     });
 }
 

@@ -2,6 +2,7 @@
 // What rays gathered, summed up over what the camera sees, and what follows for a patch's light. Private to reflection.
 #include "reflection/gather_prior.h"
 #include "reflection/gloss_shading.h"
+#include "reflection/lobe_prior.h"
 #include "reflection/surface_shading.h"
 #include "reflection/values_of_some.h"
 
@@ -49,16 +50,13 @@ class GatheredSums {
 
     void give_light(SurfaceShading& surfaces, const PatchScene& patches, const CameraFrame& frame) const;
     /// All but those of large patches.
-    void give_lobes(GlossShading& gloss) const;
+    void give_lobes(GlossShading& gloss, const PatchScene& patches, const CameraFrame& frame) const;
 
   private:
     struct Place : PlaceSums {
         int passes = 0; ///< after which it had rays enough; 0: it hasn't
     };
-    struct Lobe {
-        glm::vec3 open{0.f}, correction{0.f};
-        float weight = 0;
-        std::uint32_t look = 0;
+    struct Lobe : LobeSums {
         bool is_large = false; ///< has enough rays after the first pass
     };
 
