@@ -9,7 +9,7 @@ RenderPlan render_plan(bool quick) {
                     .every_row = 8,
                     .every_column = 7,
                     .truth_samples = 8192,
-                    .fast = {{usual, 4}, {usual, 16}, {usual, 32}, {usual, 64}, {fine, 16}},
+                    .fast = {{usual, 4}, {usual, 16}, {usual, 24}, {usual, 32}, {usual, 64}, {fine, 16}},
                     .traced = {16, 64, 256, 1024},
                     .map_samples = 256};
     if (quick)
