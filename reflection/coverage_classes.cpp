@@ -11,20 +11,31 @@ constexpr std::uint32_t kSmallSurfaces = ~0u;
 } // namespace
 
 CoverageClasses::CoverageClasses(std::span<const CoverageRay> coverage, std::span<const std::uint32_t> shaded) {
-    std::vector<std::uint32_t> parts(shaded.begin(), shaded.end());
+    struct Count {
+        std::uint32_t part;
+        std::size_t rays;
+    };
+    std::vector<Count> counts; // a square shows few parts: looking through them all is faster than sorting
+    const auto count = [&](std::uint32_t part) {
+        for (Count& known : counts)
+            if (known.part == part) {
+                ++known.rays;
+                return;
+            }
+        counts.push_back({part, 1});
+    };
     for (const CoverageRay& ray : coverage)
-        parts.push_back(ray.part);
-    std::sort(parts.begin(), parts.end());
-    for (std::size_t begin = 0, end = 0; begin < parts.size(); begin = end) {
-        while (end < parts.size() && parts[end] == parts[begin])
-            ++end;
-        if ((end - begin) * shaded.size() >= kShadedOfLarge * parts.size())
-            large_.push_back(parts[begin]);
-    }
+        count(ray.part);
+    for (const std::uint32_t part : shaded)
+        count(part);
+    for (const Count& known : counts)
+        if (known.rays * shaded.size() >= kShadedOfLarge * (coverage.size() + shaded.size()))
+            large_.push_back(known.part);
 }
 
 std::uint32_t CoverageClasses::of(std::uint32_t part) const {
-    const bool is_class = part < seen_part::kFirstSurface || std::binary_search(large_.begin(), large_.end(), part);
+    const bool is_class =
+        part < seen_part::kFirstSurface || std::find(large_.begin(), large_.end(), part) != large_.end();
     return is_class ? part : kSmallSurfaces;
 }
 

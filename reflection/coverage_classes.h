@@ -27,7 +27,7 @@ class CoverageClasses {
     std::uint32_t of(std::uint32_t part) const;
 
   private:
-    std::vector<std::uint32_t> large_; ///< parts, in order
+    std::vector<std::uint32_t> large_; ///< parts
 };
 
 /// The first of `coverage` of each class that none of the parts `shaded` belongs to.

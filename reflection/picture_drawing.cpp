@@ -222,16 +222,21 @@ class PictureDrawing {
         std::vector<std::size_t> ends{0};
         for (std::size_t x = 0; x < covered.size(); ++x) {
             const SquareSamples samples = all.of_square(x);
-            const std::vector<std::uint32_t> parts = samples.parts();
-            for (const std::size_t ray :
-                 rays_of_unshaded_classes(CoverageClasses(samples.coverage, parts), samples.coverage, parts)) {
-                const auto number = covered[x].begin + std::uint32_t(ray);
-                squares.push_back({covered[x].x, covered[x].y, number, number + 1});
-            }
+            if (!samples.coverage.empty())
+                add_unshaded(samples, covered[x], squares);
             ends.push_back(squares.size());
         }
         trace(squares, scratch, all.looks);
         all.looks_ends = std::move(ends);
+    }
+
+    static void add_unshaded(const SquareSamples& samples, const Square& covered, std::vector<Square>& rays) {
+        const std::vector<std::uint32_t> parts = samples.parts();
+        for (const std::size_t ray :
+             rays_of_unshaded_classes(CoverageClasses(samples.coverage, parts), samples.coverage, parts)) {
+            const std::uint32_t number = covered.begin + std::uint32_t(ray);
+            rays.push_back({covered.x, covered.y, number, number + 1});
+        }
     }
 
     /// Coverage rays of `squares`, in their order.
