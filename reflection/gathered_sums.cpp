@@ -108,7 +108,7 @@ void GatheredSums::give_light(SurfaceShading& surfaces, const PatchScene& patche
 }
 
 void GatheredSums::give_lobes(GlossShading& gloss, const PatchScene& patches, const CameraFrame& frame) const {
-    std::vector<LobeSums> seen;
+    std::vector<GatheredLobe> seen;
     of_lobes_.for_each([&](std::uint32_t place, const Lobe& lobe) {
         const double pixels = double(lobe.weight) / passes_;
         seen.push_back(lobe);

@@ -56,7 +56,7 @@ class GatheredSums {
     struct Place : PlaceSums {
         int passes = 0; ///< after which it had rays enough; 0: it hasn't
     };
-    struct Lobe : LobeSums {
+    struct Lobe : GatheredLobe {
         bool is_large = false; ///< has enough rays after the first pass
     };
 

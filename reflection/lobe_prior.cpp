@@ -14,20 +14,20 @@ constexpr std::size_t kPowers = 10, kShares = 4;
 
 } // namespace
 
-std::size_t LobePrior::class_of(const LobeSums& lobe) {
+std::size_t LobePrior::class_of(const GatheredLobe& lobe) {
     const auto power = std::size_t(std::bit_width(std::uint32_t(std::min(lobe.weight, 1e9f))));
     const auto share = std::size_t(std::clamp(lobe.seen_share, 0.f, 1.f) * (kShares - 0.001f));
     return (kPowers * lobe.look + std::min(power, kPowers - 1)) * kShares + share;
 }
 
-LobePrior::LobePrior(std::span<const LobeSums> lobes) {
-    for (const LobeSums& lobe : lobes) {
+LobePrior::LobePrior(std::span<const GatheredLobe> lobes) {
+    for (const GatheredLobe& lobe : lobes) {
         const std::size_t of_class = class_of(lobe);
         classes_.resize(std::max(classes_.size(), of_class + 1));
         classes_[of_class].correction += glm::dvec3(lobe.correction);
         classes_[of_class].weight += double(lobe.weight);
     }
-    for (const LobeSums& lobe : lobes) {
+    for (const GatheredLobe& lobe : lobes) {
         Class& of_class = classes_[class_of(lobe)];
         const glm::dvec3 light = expected(lobe);
         of_class.light += double(lobe.weight) * light;
@@ -35,14 +35,14 @@ LobePrior::LobePrior(std::span<const LobeSums> lobes) {
     }
 }
 
-glm::dvec3 LobePrior::expected(const LobeSums& lobe) const {
+glm::dvec3 LobePrior::expected(const GatheredLobe& lobe) const {
     const Class& all = classes_[class_of(lobe)];
     const double own = double(lobe.weight);
     return glm::dvec3(lobe.open) / own +
            (glm::dvec3(lobe.correction) + kRaysOfMean * all.correction / all.weight) / (own + kRaysOfMean);
 }
 
-glm::vec3 LobePrior::light(const LobeSums& lobe) const {
+glm::vec3 LobePrior::light(const GatheredLobe& lobe) const {
     const Class& all = classes_[class_of(lobe)];
     const glm::dvec3 light = glm::max(expected(lobe), 0.);
     glm::vec3 result(0.f);

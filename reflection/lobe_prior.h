@@ -10,7 +10,7 @@
 namespace kokage {
 
 /// Sums over the rays through one lobe of a side of a patch.
-struct LobeSums {
+struct GatheredLobe {
     glm::vec3 open{0.f}, correction{0.f}; ///< light of the open surroundings, and what rays found beside that
     float weight = 0;                     ///< rays
     std::uint32_t look = 0;               ///< 2 look + side
@@ -23,9 +23,9 @@ struct LobeSums {
 /// makes negative is taken from the rest.
 class LobePrior {
   public:
-    explicit LobePrior(std::span<const LobeSums> lobes);
+    explicit LobePrior(std::span<const GatheredLobe> lobes);
     /// Radiance in a lobe that was among them; not negative.
-    glm::vec3 light(const LobeSums& lobe) const;
+    glm::vec3 light(const GatheredLobe& lobe) const;
 
   private:
     /// Sums weighted by rays.
@@ -34,8 +34,8 @@ class LobePrior {
         double weight = 0;
         glm::dvec3 light{0.}, positive{0.}; ///< as expected, and without what is negative
     };
-    static std::size_t class_of(const LobeSums& lobe);
-    glm::dvec3 expected(const LobeSums& lobe) const;
+    static std::size_t class_of(const GatheredLobe& lobe);
+    glm::dvec3 expected(const GatheredLobe& lobe) const;
 
     std::vector<Class> classes_;
 };

@@ -11,8 +11,8 @@ namespace kokage {
 namespace {
 
 /// A patch under an open sky of 1 whose rays each find nothing, or the sky, with chance `open`.
-LobeSums noisy_lobe(Random& random, int rays, float open, std::uint32_t look = 0) {
-    LobeSums lobe;
+GatheredLobe noisy_lobe(Random& random, int rays, float open, std::uint32_t look = 0) {
+    GatheredLobe lobe;
     lobe.look = look;
     for (int ray = 0; ray < rays; ++ray) {
         lobe.open += glm::vec3(1, 2, 0);
@@ -24,10 +24,10 @@ LobeSums noisy_lobe(Random& random, int rays, float open, std::uint32_t look = 0
     return lobe;
 }
 
-glm::dvec3 mean_light(const LobePrior& prior, std::span<const LobeSums> lobes) {
+glm::dvec3 mean_light(const LobePrior& prior, std::span<const GatheredLobe> lobes) {
     glm::dvec3 sum(0.);
     double weight = 0;
-    for (const LobeSums& lobe : lobes) {
+    for (const GatheredLobe& lobe : lobes) {
         const glm::vec3 light = prior.light(lobe);
         EXPECT_GE(std::min({light.x, light.y, light.z}), 0);
         sum += double(lobe.weight) * glm::dvec3(light);
@@ -37,10 +37,10 @@ glm::dvec3 mean_light(const LobePrior& prior, std::span<const LobeSums> lobes) {
 }
 
 /// As the rays themselves say.
-glm::dvec3 mean_of_rays(std::span<const LobeSums> lobes) {
+glm::dvec3 mean_of_rays(std::span<const GatheredLobe> lobes) {
     glm::dvec3 sum(0.);
     double weight = 0;
-    for (const LobeSums& lobe : lobes) {
+    for (const GatheredLobe& lobe : lobes) {
         sum += glm::dvec3(lobe.open + lobe.correction);
         weight += double(lobe.weight);
     }
@@ -49,7 +49,7 @@ glm::dvec3 mean_of_rays(std::span<const LobeSums> lobes) {
 
 TEST(LobePrior, NoLightIsWonWherePatchesOfFewRaysAreDarker) {
     Random random(1, 0);
-    std::vector<LobeSums> lobes;
+    std::vector<GatheredLobe> lobes;
     for (int k = 0; k < 2000; ++k) {
         lobes.push_back(noisy_lobe(random, 1, 0.1f)); // these peep out
         lobes.back().seen_share = 0.1f;
@@ -59,8 +59,8 @@ TEST(LobePrior, NoLightIsWonWherePatchesOfFewRaysAreDarker) {
     for (int k = 0; k < 200; ++k)
         lobes.push_back(noisy_lobe(random, 40, 0.9f));
     const LobePrior prior(lobes);
-    const std::span<const LobeSums> all(lobes), peeping = all.first(2000), small = all.subspan(2000, 2000),
-                                                large = all.last(200);
+    const std::span<const GatheredLobe> all(lobes), peeping = all.first(2000), small = all.subspan(2000, 2000),
+                                                    large = all.last(200);
     for (const auto& group : {peeping, small, large})
         for (glm::length_t c = 0; c < 2; ++c) // by one mean for all, what peeps out: 5
             EXPECT_NEAR(mean_light(prior, group)[c] / mean_of_rays(group)[c], 1, 0.01);
@@ -69,7 +69,7 @@ TEST(LobePrior, NoLightIsWonWherePatchesOfFewRaysAreDarker) {
 
 TEST(LobePrior, PatchesOfOneRayTakeMuchOfTheirLightFromEachOther) {
     Random random(2, 0);
-    std::vector<LobeSums> lobes;
+    std::vector<GatheredLobe> lobes;
     for (int k = 0; k < 500; ++k)
         lobes.push_back(noisy_lobe(random, 1, 0.5f));
     for (int k = 0; k < 500; ++k)
