@@ -196,6 +196,7 @@ void Film::store(Picture& picture, int x, int y) const {
         for (std::size_t k = 0; k < channels_; ++k)
             total[k] += double(from[k]);
     }
+    // Corrections by coverage may take more than a pixel has. (Reflection may be negative by its own estimate.)
     const auto mean = [&](Image& image, std::size_t at, bool positive = false) {
         for (std::size_t c = 0; c < std::size_t(image.channels); ++c) {
             const double value = total[at + c] / total[0];
@@ -203,14 +204,14 @@ void Film::store(Picture& picture, int x, int y) const {
         }
     };
     mean(picture.radiance, 2, true);
-    mean(picture.subject, 1);
+    mean(picture.subject, 1, true);
     if (!picture.layers)
         return;
     PictureLayers& layers = *picture.layers;
-    mean(layers.direct, 5);
-    mean(layers.indirect, 8);
+    mean(layers.direct, 5, true);
+    mean(layers.indirect, 8, true);
     mean(layers.reflection, 11);
-    mean(layers.albedo, 14);
+    mean(layers.albedo, 14, true);
     const Nearest& nearest =
         bands_[std::size_t(own)].nearest[std::size_t(y - first_row(own)) * std::size_t(width_) + std::size_t(x)];
     layers.depth.at(x, y)[0] = nearest.depth;

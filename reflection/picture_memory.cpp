@@ -22,10 +22,11 @@ double smooth_triangles(const PatchScene& scene) {
 double picture_bytes(const PictureOptions& options, int threads) {
     const double pixels = double(options.width) * double(options.height), columns = double(options.width) + 2;
     const double picture = pixels * double(sizeof(float)) * (options.layers ? 21 : 4);
-    // Of every thread: first rays of a band's squares, and all rays of a row, which may have more than others.
+    // Of every thread: first rays of a band's squares, and all rays of a row, which may have more than others, twice:
+    // as they are traced, and square by square.
     constexpr double kMoreInARow = 3;
     const double of_row = kMoreInARow * double(options.samples),
-                 shaded = double(Film::kBandRows) * SamplePlan::first_samples(options.samples) + of_row,
+                 shaded = double(Film::kBandRows) * SamplePlan::first_samples(options.samples) + 2 * of_row,
                  coverage = RadianceSpread::kMostCoverageRays * of_row;
     const double of_column = shaded * double(sizeof(CameraSample)) + coverage * double(sizeof(CoverageRay)) +
                              double(Film::kBandRows) * double(sizeof(RadianceSpread));

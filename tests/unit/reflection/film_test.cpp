@@ -214,6 +214,29 @@ TEST(Film, AClassWithoutAnyLookIsAsBrightAsTheSquare) {
     EXPECT_NEAR(film.picture().radiance.at(0, 0)[0], 2, 1e-5);
 }
 
+TEST(Film, CoverageTakesNoMoreThanAPixelHas) {
+    PictureOptions options = small_picture(2, 2);
+    options.layers = true;
+    Film film(options, camera_frame(camera_at({0, 0, 1}, {0, 0, 0}), 2, 2));
+    CameraSample dark, bright;
+    dark.seen.part = bright.seen.part = seen_part::of_patch(1, true);
+    dark.place = glm::vec2(0.01f);
+    bright.place = glm::vec2(0.99f);
+    bright.seen.direct = glm::vec3(1);
+    for (int band = 0; band < film.band_count(); ++band)
+        for (int y = film.first_row(band); y < film.end_row(band); ++y)
+            for (int x = -1; x <= 2; ++x) {
+                // All coverage lies where the pixel before hardly reaches.
+                const bool is_covered = x == 1 && y == 1;
+                const std::vector<CameraSample> shaded(1, dark), both{dark, bright};
+                const std::vector<CoverageRay> coverage(6, {bright.place, bright.seen.part});
+                film.add(band, x, y, is_covered ? SquareSamples{both, coverage, {}} : SquareSamples{shaded, {}, {}});
+            }
+    const Picture picture = film.picture();
+    EXPECT_EQ(picture.layers->direct.at(0, 0)[0], 0);
+    EXPECT_GT(picture.layers->direct.at(1, 1)[0], 0);
+}
+
 TEST(CoverageClasses, KeepApartWhatTwoShadedRaysShouldHaveMet) {
     const std::uint32_t large = seen_part::of_patch(4, true), other_side = seen_part::of_patch(4, false),
                         small = seen_part::of_patch(9, true);
