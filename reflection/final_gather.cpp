@@ -16,7 +16,7 @@ namespace kokage {
 namespace {
 
 constexpr int kRowsAtOnce = 32;
-constexpr std::uint64_t kGatherNumbers = 0x67617468;
+constexpr std::uint64_t kGatherNumbers = 0x67617468, kPlaceNumbers = 0x706c6163;
 
 /// A millionfold sum of such numbers is finite. What is not a number has no part in it.
 glm::vec3 summable(const glm::vec3& light) {
@@ -27,6 +27,16 @@ glm::vec3 summable(const glm::vec3& light) {
             result[c] = std::clamp(light[c], -kLargest, kLargest);
     return result;
 }
+
+/// What camera rays of a row see that more is to be known of.
+struct SeenRow {
+    struct Point {
+        CameraHit hit;
+        std::uint32_t side;   ///< of a patch
+        std::uint32_t number; ///< of the side's rays
+    };
+    std::vector<Point> points;
+};
 
 struct GatheredRow {
     std::vector<GatheredSample> samples;
@@ -42,39 +52,43 @@ class Gathering {
           environment_(environment), surfaces_(surfaces), gloss_(gloss), flat_(flat_patches(*scene.patches)),
           directions_(environment, incoming.has_ground()) {}
 
-    /// By one ray a pixel of a row: of what the camera sees and `sums` knows too little of.
-    GatheredRow row(int pass, int y, const GatheredSums& sums) const {
-        std::vector<PathNumbers> numbers;
+    /// By one ray a pixel of a row: what the camera sees and `sums` knows too little of.
+    SeenRow seen(int pass, int y, const GatheredSums& sums) const {
         std::vector<CameraHit> hits;
-        const std::uint64_t seed = hash64(options_.seed ^ hash64(kGatherNumbers + std::uint64_t(pass)));
+        const std::uint64_t seed = hash64(options_.seed ^ hash64(kPlaceNumbers + std::uint64_t(pass)));
         for (int x = 0; x < options_.width; ++x) {
-            // Numbers in a row fill squares of the picture. (Numbers in a row for all passes of a pixel would leave the
-            // first pass, after which large patches have enough, with numbers from one part of the unit square.)
-            numbers.emplace_back(seed, place_on_curve(std::uint32_t(x), std::uint32_t(y)));
-            const glm::vec2 place = numbers.back().pair();
+            // Numbers in a row fill squares of the picture.
+            const glm::vec2 place = PathNumbers(seed, place_on_curve(std::uint32_t(x), std::uint32_t(y))).pair();
             hits.emplace_back().direction = frame_.direction(float(x) + place.x, float(y) + place.y);
         }
         relief_.first_hits(hits);
+        SeenRow row;
+        for (const CameraHit& hit : hits)
+            if (hit.shows_surface(incoming_.ground_distance(frame_.position, hit.direction)))
+                if (const SurfacePoint at = surfaces_.point(frame_.position, hit); !sums.enough(surfaces_.places(at)))
+                    row.points.push_back({hit, 2 * at.patch + !at.front, 0});
+        return row;
+    }
+
+    GatheredRow gathered(const SeenRow& seen) const {
         GatheredRow row;
         ShadingScratch scratch;
-        for (std::size_t k = 0; k < hits.size(); ++k) {
-            if (!hits[k].shows_surface(incoming_.ground_distance(frame_.position, hits[k].direction)))
-                continue;
-            const SurfacePoint at = surfaces_.point(frame_.position, hits[k]);
-            if (const LightPlaces places = surfaces_.places(at); !sums.enough(places))
-                row.samples.push_back(from(at, places, hits[k], numbers[k], scratch));
+        for (const SeenRow::Point& point : seen.points) {
+            // A side's rays are one sequence, however they are spread over the picture and its passes.
+            PathNumbers numbers(hash64(options_.seed ^ hash64(kGatherNumbers + point.side)), point.number);
+            row.samples.push_back(from(point.hit, numbers, scratch));
         }
         row.rays = scratch.met_rays;
         return row;
     }
 
   private:
-    GatheredSample from(const SurfacePoint& at, const LightPlaces& places, const CameraHit& hit, PathNumbers& numbers,
-                        ShadingScratch& scratch) const {
+    GatheredSample from(const CameraHit& hit, PathNumbers& numbers, ShadingScratch& scratch) const {
+        const SurfacePoint at = surfaces_.point(frame_.position, hit);
         const PatchScene& patches = *scene_.patches;
         const Optics& optics = patches.optics[patches.patches[at.patch].optics];
         GatheredSample sample;
-        sample.places = places;
+        sample.places = surfaces_.places(at);
         sample.point = at.point;
         sample.origin = patches.positions[patches.triangles[patches.patches[at.patch].first_triangle].x];
         sample.is_flat = !at.smooth && flat_[at.patch];
@@ -138,16 +152,25 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     const Gathering gathering(scene, relief, frame, options, incoming, environment, surfaces, gloss);
     GatheredSums sums(surfaces.light_count(), gloss.lobe_count());
     MapCorrections maps(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1));
+    std::vector<std::uint32_t> rays_of_sides(2 * scene.patches->patches.size(), 0);
     progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
     std::uint64_t traced = 0;
     for (int pass = 0; pass < rays; ++pass) {
         const std::uint64_t before = sums.samples();
         for (int first = 0; first < options.height; first += kRowsAtOnce) {
-            std::vector<GatheredRow> rows(static_cast<std::size_t>(std::min(kRowsAtOnce, options.height - first)));
+            std::vector<SeenRow> seen(static_cast<std::size_t>(std::min(kRowsAtOnce, options.height - first)));
+            std::vector<GatheredRow> rows(seen.size());
+            parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+                for (std::size_t row = begin; row < end; ++row)
+                    seen[row] = gathering.seen(pass, first + int(row), sums);
+            });
+            for (SeenRow& row : seen)
+                for (SeenRow::Point& point : row.points)
+                    point.number = rays_of_sides[point.side]++;
             parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
                 progress.throw_if_stopped();
                 for (std::size_t row = begin; row < end; ++row)
-                    rows[row] = gathering.row(pass, first + int(row), sums);
+                    rows[row] = gathering.gathered(seen[row]);
                 progress.advance(end - begin);
             });
             for (const GatheredRow& row : rows) {

@@ -68,11 +68,13 @@ GatherDirections::Drawn GatherDirections::draw(const glm::vec3& normal, const Op
     if (!(reflected + transmitted > 0))
         return drawn;
     const float share = reflected / (reflected + transmitted);
-    if (choice < sky_share_) {
-        drawn.direction = sky_->sample(numbers, choice / sky_share_).direction;
+    if (numbers.x < sky_share_) {
+        drawn.direction = sky_->sample({numbers.x / sky_share_, numbers.y}, choice).direction;
     } else {
-        const bool before = (choice - sky_share_) / (1 - sky_share_) < share;
-        drawn.direction = about_axis(cosine_direction(numbers), before ? normal : -normal);
+        const float place = (numbers.x - sky_share_) / (1 - sky_share_);
+        const bool before = place < share;
+        const float within = before ? place / share : (place - share) / (1 - share);
+        drawn.direction = about_axis(cosine_direction({std::min(within, 0x1.fffffep-1f), numbers.y}), before ? normal : -normal);
     }
     const float cosine = glm::dot(normal, drawn.direction);
     const float lobe = (cosine > 0 ? share : 1 - share) * std::abs(cosine) / kPi;
