@@ -40,7 +40,7 @@ struct SeenRow {
 
 struct GatheredRow {
     std::vector<GatheredSample> samples;
-    std::uint64_t rays = 0;
+    std::uint64_t rays = 0, sky_rays = 0;
 };
 
 class Gathering {
@@ -79,6 +79,7 @@ class Gathering {
             row.samples.push_back(from(point.hit, numbers, scratch));
         }
         row.rays = scratch.met_rays;
+        row.sky_rays = scratch.sky_rays;
         return row;
     }
 
@@ -94,10 +95,9 @@ class Gathering {
         sample.is_flat = !at.smooth && flat_[at.patch];
         sample.solved = summable(surfaces_.solved(at));
         sample.look = 2 * (scene_.looks.empty() ? 0 : scene_.triangle_look[at.triangle]) + !at.front;
-        const glm::vec2 scattered = numbers.pair(), mirrored = numbers.pair();
-        const float choice = numbers.single();
+        const glm::vec2 mirrored = numbers.pair();
         const SampleIndex index{0, 1, std::uint32_t(hash64(numbers.independent() * 4294967296.f))};
-        sample.gathered = scattered_light(at, optics, choice, scattered, index, scratch);
+        sample.gathered = scattered_light(at, optics, numbers, index, scratch);
         if (flat_[at.patch])
             sample.lobe = gloss_.lobe_of_patch(at);
         if (sample.lobe) {
@@ -110,18 +110,31 @@ class Gathering {
         return sample;
     }
 
-    glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, float choice, const glm::vec2& place,
-                              SampleIndex index, ShadingScratch& scratch) const {
+    glm::vec3 scattered_light(const SurfacePoint& at, const Optics& optics, PathNumbers& numbers, SampleIndex index,
+                              ShadingScratch& scratch) const {
         const glm::vec3 normal = at.relief ? at.relief->mesh_normal : at.normal;
-        const GatherDirections::Drawn drawn = directions_.draw(normal, optics, place, choice);
-        if (!(luminance(drawn.weight) > 0))
-            return glm::vec3(0.f);
+        const GatherDirections::Lobes lobes(normal, optics);
         // Grazing rays would meet the surface that they leave, which is only known to rounding.
-        const glm::vec3 origin =
-            at.point + std::copysign(incoming_.ray_offset(), glm::dot(normal, drawn.direction)) * at.geometric_normal;
-        const glm::vec3 seen = incoming_.along(origin, drawn.direction, index, scratch)
-                                   .value_or(lat_long_radiance(environment_.remainder, drawn.direction));
-        return summable(drawn.weight * summable(seen));
+        const auto origin = [&](const glm::vec3& direction) {
+            return at.point + std::copysign(incoming_.ray_offset(), glm::dot(normal, direction)) * at.geometric_normal;
+        };
+        glm::vec3 sum(0.f);
+        if (const auto drawn = directions_.of_lobes(lobes, numbers.pair()); luminance(drawn.surface_weight) > 0) {
+            const auto met = incoming_.along(origin(drawn.direction), drawn.direction, index, scratch);
+            sum += met ? drawn.surface_weight * summable(*met) : drawn.sky_weight * sky(drawn.direction);
+        }
+        for (int k = 0; k < GatherDirections::kSkyRays; ++k) {
+            const glm::vec2 place = numbers.pair();
+            const auto drawn = directions_.to_sky(lobes, place, numbers.independent());
+            if (luminance(drawn.sky_weight) > 0 &&
+                incoming_.sees_sky(origin(drawn.direction), drawn.direction, scratch))
+                sum += drawn.sky_weight * sky(drawn.direction);
+        }
+        return summable(sum);
+    }
+
+    glm::vec3 sky(const glm::vec3& direction) const {
+        return summable(lat_long_radiance(environment_.remainder, direction));
     }
 
     const ShadedScene& scene_;
@@ -154,7 +167,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     MapCorrections maps(surfaces.light_count(), std::max<std::size_t>(scene.looks.size(), 1));
     std::vector<std::uint32_t> rays_of_sides(2 * scene.patches->patches.size(), 0);
     progress.begin("gathering light where the camera looks", std::size_t(options.height) * std::size_t(rays));
-    std::uint64_t traced = 0;
+    std::uint64_t traced = 0, to_sky = 0;
     for (int pass = 0; pass < rays; ++pass) {
         const std::uint64_t before = sums.samples();
         for (int first = 0; first < options.height; first += kRowsAtOnce) {
@@ -180,6 +193,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
                         maps.add(sample.places, sample.look, *sample.lobe_of_map);
                 }
                 traced += row.rays;
+                to_sky += row.sky_rays;
             }
         }
         sums.end_pass();
@@ -193,6 +207,7 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     sums.give_lobes(gloss, *scene.patches, frame);
     maps.give(gloss);
     report.counts.push_back({"gathering rays", traced});
+    report.counts.push_back({"gathering rays to the sky", to_sky});
 }
 
 double gathering_bytes(const PictureOptions& options, double patches, double corners, int threads) {

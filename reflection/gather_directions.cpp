@@ -8,9 +8,7 @@
 namespace kokage {
 namespace {
 
-/// Over a ground, a third of the rays for the sky tells as much as 1.4 times the rays of cosine lobes alone (an oak
-/// under a clear sky; 0.25 and 0.5 are as good). Without one, a remainder of less contrast has no bright parts.
-constexpr float kSkyShare = 0.35f;
+/// Without a ground, a remainder of less contrast has no bright parts.
 constexpr double kEven = 1.2;
 constexpr int kMostColumns = 512, kMostRows = 256;
 
@@ -55,33 +53,47 @@ Image seen_sky(const Image& remainder, bool above_ground) {
 GatherDirections::GatherDirections(const Environment& environment, bool above_ground)
     : seen_(seen_sky(environment.remainder, above_ground)) {
     auto sampler = std::make_unique<RemainderSampler>(seen_);
-    if (!(above_ground || sampler->contrast() > kEven))
-        return;
-    sky_share_ = kSkyShare;
-    sky_ = std::move(sampler);
+    if (above_ground || sampler->contrast() > kEven)
+        sky_ = std::move(sampler);
 }
 
-GatherDirections::Drawn GatherDirections::draw(const glm::vec3& normal, const Optics& optics, const glm::vec2& numbers,
-                                               float choice) const {
+GatherDirections::Lobes::Lobes(const glm::vec3& normal, const Optics& optics) : normal_(normal), optics_(optics) {
     const float reflected = luminance(optics.reflectance), transmitted = luminance(optics.transmittance);
-    Drawn drawn;
-    if (!(reflected + transmitted > 0))
-        return drawn;
-    const float share = reflected / (reflected + transmitted);
-    if (numbers.x < sky_share_) {
-        drawn.direction = sky_->sample({numbers.x / sky_share_, numbers.y}, choice).direction;
-    } else {
-        const float place = (numbers.x - sky_share_) / (1 - sky_share_);
-        const bool before = place < share;
-        const float within = before ? place / share : (place - share) / (1 - share);
-        drawn.direction = about_axis(cosine_direction({std::min(within, 0x1.fffffep-1f), numbers.y}), before ? normal : -normal);
-    }
-    const float cosine = glm::dot(normal, drawn.direction);
-    const float lobe = (cosine > 0 ? share : 1 - share) * std::abs(cosine) / kPi;
-    const float density = sky_share_ * (sky_ ? sky_->density(drawn.direction) : 0.f) + (1 - sky_share_) * lobe;
-    if (density > 0)
-        drawn.weight = (cosine > 0 ? optics.reflectance : optics.transmittance) * (std::abs(cosine) / (kPi * density));
-    return drawn;
+    is_black_ = !(reflected + transmitted > 0);
+    reflected_share_ = is_black_ ? 0 : reflected / (reflected + transmitted);
+}
+
+glm::vec3 GatherDirections::Lobes::direction(const glm::vec2& numbers) const {
+    // One number chooses the side and goes on as the place within it, so that sequences stay even on both.
+    const bool before = numbers.x < reflected_share_;
+    const float place = before ? numbers.x / reflected_share_ : (numbers.x - reflected_share_) / (1 - reflected_share_);
+    return about_axis(cosine_direction({std::min(place, 0x1.fffffep-1f), numbers.y}), before ? normal_ : -normal_);
+}
+
+float GatherDirections::Lobes::density(float cosine) const {
+    return (cosine > 0 ? reflected_share_ : 1 - reflected_share_) * std::abs(cosine) / kPi;
+}
+
+GatherDirections::Drawn GatherDirections::drawn(const Lobes& lobes, const glm::vec3& direction) const {
+    const float cosine = glm::dot(lobes.normal_, direction), of_lobes = lobes.density(cosine),
+                of_sky = sky_ ? sky_->density(direction) : of_lobes;
+    const glm::vec3 scattered =
+        (cosine > 0 ? lobes.optics_.reflectance : lobes.optics_.transmittance) * (std::abs(cosine) / kPi);
+    Drawn result{direction, glm::vec3(0.f), glm::vec3(0.f)};
+    if (of_lobes > 0)
+        result.surface_weight = scattered / of_lobes;
+    if (const float all = of_lobes + kSkyRays * of_sky; all > 0)
+        result.sky_weight = scattered / all;
+    return result;
+}
+
+GatherDirections::Drawn GatherDirections::of_lobes(const Lobes& lobes, const glm::vec2& numbers) const {
+    return lobes.is_black_ ? Drawn() : drawn(lobes, lobes.direction(numbers));
+}
+
+GatherDirections::Drawn GatherDirections::to_sky(const Lobes& lobes, const glm::vec2& numbers, float choice) const {
+    return lobes.is_black_ ? Drawn()
+                           : drawn(lobes, sky_ ? sky_->sample(numbers, choice).direction : lobes.direction(numbers));
 }
 
 } // namespace kokage

@@ -41,6 +41,12 @@ IncomingRadiance::Met IncomingRadiance::first_met(const glm::vec3& origin, const
     return met;
 }
 
+bool IncomingRadiance::sees_sky(const glm::vec3& origin, const glm::vec3& direction, ShadingScratch& scratch) const {
+    ++scratch.sky_rays;
+    return !(ground_.distance(origin, direction) < kInfinity) &&
+           !queries_.occluded(origin, direction, queries_.ray_offset(), kInfinity);
+}
+
 std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const glm::vec3& direction,
                                                  SampleIndex sample, ShadingScratch& scratch) const {
     const Met met = first_met(origin, direction, scratch);

@@ -19,7 +19,7 @@ struct ShadingScratch {
     std::vector<float> weights;
     std::vector<glm::vec3> directions;
     std::vector<std::uint8_t> hidden;
-    std::uint64_t met_rays = 0; ///< traced by incoming_radiance.h
+    std::uint64_t met_rays = 0, sky_rays = 0; ///< traced by incoming_radiance.h
 };
 
 /// What lights send to a viewer by way of a surface.
