@@ -15,7 +15,7 @@
 namespace kokage {
 namespace {
 
-constexpr int kRowsAtOnce = 32;
+constexpr int kRowsAtOnce = 16;
 constexpr std::uint64_t kGatherNumbers = 0x67617468, kPlaceNumbers = 0x706c6163;
 
 /// A millionfold sum of such numbers is finite. What is not a number has no part in it.
@@ -52,8 +52,29 @@ class Gathering {
           environment_(environment), surfaces_(surfaces), gloss_(gloss), flat_(flat_patches(*scene.patches)),
           directions_(environment, incoming.has_ground()) {}
 
-    /// By one ray a pixel of a row: what the camera sees and `sums` knows too little of.
-    SeenRow seen(int pass, int y, const GatheredSums& sums) const {
+    /// By one ray a pixel of some rows from `first` on: what the camera sees and `sums` knows too little of.
+    std::vector<SeenRow> seen_rows(int pass, int first, const GatheredSums& sums) const {
+        std::vector<SeenRow> rows(static_cast<std::size_t>(std::min(kRowsAtOnce, options_.height - first)));
+        parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+            for (std::size_t row = begin; row < end; ++row)
+                rows[row] = seen_row(pass, first + int(row), sums);
+        });
+        return rows;
+    }
+
+    std::vector<GatheredRow> gathered_rows(const std::vector<SeenRow>& seen, Progress& progress) const {
+        std::vector<GatheredRow> rows(seen.size());
+        parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
+            progress.throw_if_stopped();
+            for (std::size_t row = begin; row < end; ++row)
+                rows[row] = gathered_row(seen[row]);
+            progress.advance(end - begin);
+        });
+        return rows;
+    }
+
+  private:
+    SeenRow seen_row(int pass, int y, const GatheredSums& sums) const {
         std::vector<CameraHit> hits;
         const std::uint64_t seed = hash64(options_.seed ^ hash64(kPlaceNumbers + std::uint64_t(pass)));
         for (int x = 0; x < options_.width; ++x) {
@@ -70,7 +91,7 @@ class Gathering {
         return row;
     }
 
-    GatheredRow gathered(const SeenRow& seen) const {
+    GatheredRow gathered_row(const SeenRow& seen) const {
         GatheredRow row;
         ShadingScratch scratch;
         for (const SeenRow::Point& point : seen.points) {
@@ -83,7 +104,6 @@ class Gathering {
         return row;
     }
 
-  private:
     GatheredSample from(const CameraHit& hit, PathNumbers& numbers, ShadingScratch& scratch) const {
         const SurfacePoint at = surfaces_.point(frame_.position, hit);
         const PatchScene& patches = *scene_.patches;
@@ -171,22 +191,11 @@ void gather_for_camera(const ShadedScene& scene, const ReliefSurfaces& relief, c
     for (int pass = 0; pass < rays; ++pass) {
         const std::uint64_t before = sums.samples();
         for (int first = 0; first < options.height; first += kRowsAtOnce) {
-            std::vector<SeenRow> seen(static_cast<std::size_t>(std::min(kRowsAtOnce, options.height - first)));
-            std::vector<GatheredRow> rows(seen.size());
-            parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-                for (std::size_t row = begin; row < end; ++row)
-                    seen[row] = gathering.seen(pass, first + int(row), sums);
-            });
+            std::vector<SeenRow> seen = gathering.seen_rows(pass, first, sums);
             for (SeenRow& row : seen)
                 for (SeenRow::Point& point : row.points)
                     point.number = rays_of_sides[point.side]++;
-            parallel_blocks(rows.size(), 1, [&](std::size_t begin, std::size_t end) {
-                progress.throw_if_stopped();
-                for (std::size_t row = begin; row < end; ++row)
-                    rows[row] = gathering.gathered(seen[row]);
-                progress.advance(end - begin);
-            });
-            for (const GatheredRow& row : rows) {
+            for (const GatheredRow& row : gathering.gathered_rows(seen, progress)) {
                 for (const GatheredSample& sample : row.samples) {
                     sums.add(sample);
                     if (sample.lobe_of_map)
@@ -216,14 +225,15 @@ double gathering_bytes(const PictureOptions& options, double patches, double cor
         return 0;
     // Few patches show the camera both of their sides.
     const GatheredSums::Counts counts{patches, corners, std::min(patches, rays), std::min(corners, 3 * rays)};
-    const double row = double(options.width), row_of_hits = row * double(sizeof(CameraHit) + sizeof(PathNumbers)),
-                 row_of_samples = row * double(sizeof(GatheredSample));
+    const double row = double(options.width), row_of_hits = row * double(sizeof(CameraHit)),
+                 row_of_points = row * double(sizeof(SeenRow::Point) + sizeof(GatheredSample)),
+                 numbers = 2 * patches * double(sizeof(std::uint32_t));
     constexpr double kGrown = 2; // vectors that are filled without being told how far
     return GatheredSums::most_bytes(counts) + GatheredSums::most_bytes_to_give(counts) +
            MapCorrections::most_bytes(2 * (patches + corners), counts.seen_corners) +
            PatchGradients::most_bytes(2 * (patches + corners), counts.seen_patches) +
-           GlossShading::most_lobe_bytes(patches, counts.seen_patches) + patches +
-           kGrown * (kRowsAtOnce * row_of_samples + threads * row_of_hits);
+           GlossShading::most_lobe_bytes(patches, counts.seen_patches) + patches + numbers +
+           kGrown * (kRowsAtOnce * row_of_points + threads * row_of_hits);
 }
 
 } // namespace kokage

@@ -23,8 +23,9 @@ class IncomingRadiance {
                                    ShadingScratch& scratch) const;
     /// Whether the ray leaves the scene.
     bool sees_sky(const glm::vec3& origin, const glm::vec3& direction, ShadingScratch& scratch) const;
-    /// As along() for a ray that was drawn from a lobe of this roughness. Such rays show what they meet: smooth surfaces
-    /// mirror their surroundings by further rays, in place of the solution's gloss, which knows their mean alone.
+    /// As along() for a ray that was drawn from a lobe of this roughness. Such rays show what they meet: smooth
+    /// surfaces mirror their surroundings by further rays, in place of the solution's gloss, which knows their mean
+    /// alone.
     std::optional<glm::vec3> through_lobe(const glm::vec3& origin, const glm::vec3& direction, float roughness,
                                           SampleIndex sample, ShadingScratch& scratch) const;
 

@@ -122,6 +122,33 @@ TEST(FinalGather, SpreadsTheRaysOfPatchesThatHaveEnoughAfterOnePass) {
     }
 }
 
+TEST(FinalGather, SpreadsTheRaysOfAPatchAsOneSequence) {
+    // A black roof hides half of an even sky. Independent rays leave an error of 5 %.
+    PatchScene patches;
+    patches.optics = {{glm::vec3(0.6f), glm::vec3(0.f)}, {glm::vec3(0.f), glm::vec3(0.f)}};
+    add_rectangle(patches, {0, 0, 0.1f}, {0.2f, 0, 0}, {0, 0, -0.2f}, 0);
+    add_rectangle(patches, {-100, 1, 100}, {100, 0, 0}, {0, 0, -200}, 1);
+    ShadedScene scene = evenly_shaded(patches, glm::vec3(0.f));
+    scene.indirect_front[0] = scene.radiance_front[0] = glm::vec3(0.32f);
+    const RayQueries queries(patches);
+    const Environment sky = constant_environment(glm::vec3(1.f));
+    const Camera camera = camera_at({4, 6, 0}, {0.1f, 0, 0}, 0.02f);
+    const auto picture = [&](const PictureOptions& options) {
+        return brightness(render_picture(scene, queries, sky, camera, options, silent_progress()).radiance);
+    };
+    PictureOptions options = without_ground(8, 8, 4);
+    options.gather_rays = 1024;
+    const double truth = picture(options);
+    options.gather_rays = 4;
+    double squares = 0;
+    constexpr int kPictures = 24;
+    for (int k = 0; k < kPictures; ++k) {
+        options.seed = std::uint64_t(k) + 100;
+        squares += std::pow(picture(options) / truth - 1, 2);
+    }
+    EXPECT_LT(std::sqrt(squares / kPictures), 0.02);
+}
+
 TEST(FinalGather, LightsWhatWasSolvedAsBlackAlsoByFewRays) {
     HalfHiddenLeaf leaf;
     leaf.scene.indirect_front[0] = glm::vec3(0.f);
