@@ -146,9 +146,9 @@ class Gathering {
         for (int k = 0; k < GatherDirections::kSkyRays; ++k) {
             const glm::vec2 place = numbers.pair();
             const auto drawn = directions_.to_sky(lobes, place, numbers.independent());
-            if (luminance(drawn.sky_weight) > 0 &&
-                incoming_.sees_sky(origin(drawn.direction), drawn.direction, scratch))
-                sum += drawn.sky_weight * sky(drawn.direction);
+            const glm::vec3 light = drawn.sky_weight * sky(drawn.direction);
+            if (luminance(light) > 0 && incoming_.sees_sky(origin(drawn.direction), drawn.direction, scratch))
+                sum += light;
         }
         return summable(sum);
     }

@@ -196,10 +196,11 @@ TEST(FinalGather, IsSkippedWithoutShadowsPerPixelAndSaysSo) {
     EXPECT_FALSE(has(plain));
 }
 
-std::uint64_t rays_of(const Picture& picture) {
+std::uint64_t rays_of(const Picture& picture, const char* name = "gathering rays") {
     for (const WorkReport::Count& count : picture.report.counts)
-        if (count.name == "gathering rays")
+        if (count.name == name)
             return count.value;
+    ADD_FAILURE() << "nothing is called " << name;
     return 0;
 }
 
@@ -224,6 +225,13 @@ TEST(FinalGather, CountsRaysThatWereTraced) {
     EXPECT_GT(rays_of(glossy.solved(1)), 32u * 26u);
     glossy.camera = camera_at({2, 0.4f, 0}, {0.5f, 0, 0}, 0.12f);
     EXPECT_LT(rays_of(glossy.solved(1)), 32u * 26u);
+}
+
+TEST(FinalGather, SeeksTheSkyOnlyWhereItIsBright) {
+    HalfHiddenLeaf leaf;
+    EXPECT_EQ(rays_of(leaf.solved(1), "gathering rays to the sky"), 32u * 32u);
+    leaf.sky = constant_environment(glm::vec3(0.f));
+    EXPECT_EQ(rays_of(leaf.solved(1), "gathering rays to the sky"), 0u);
 }
 
 } // namespace

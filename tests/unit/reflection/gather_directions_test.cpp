@@ -112,6 +112,10 @@ TEST(GatherDirections, BlackSurfacesScatterNothing) {
     const GatherDirections::Lobes before(up, opaque);
     for (const float number : {0.f, 0.5f, 0x1.fffffep-1f})
         EXPECT_GE(directions.of_lobes(before, {number, 0.4f}).direction.y, 0.f);
+    const Optics lit_through{glm::vec3(0.f), glm::vec3(0.5f)}; // nor on this side, from the first number on
+    const GatherDirections::Lobes behind(up, lit_through);
+    for (const float number : {0.f, 0.5f, 0x1.fffffep-1f})
+        EXPECT_LE(directions.of_lobes(behind, {number, 0.4f}).direction.y, 0.f);
 }
 
 TEST(GatherDirections, SeekBrightPartsWhereThereAreAny) {
