@@ -44,6 +44,12 @@ struct TruthOfPicture {
     }
 };
 
+/// A backdrop that plays the ground: how bright it would be without the scene is seen, how it is lit is not.
+bool leaves_ground_out(const ShadedScene& scene, const Environment& environment, const PictureOptions& options) {
+    return environment.has_lower_half && options.ground == PictureGround::automatic && !scene.patches->ground &&
+           !scene.patches->triangles.empty();
+}
+
 } // namespace
 
 Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
@@ -61,6 +67,12 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     const TruthOfPicture truth{queries, backdrop, ground, paths};
 
     Picture picture = empty_picture(options);
+    if (leaves_ground_out(scene, environment, options))
+        picture.report.skips.push_back({"the scene's shade on the surroundings' lower half",
+                                        "what lights the ground that an image shows is not known, so there is no "
+                                        "truth; compare with fast pictures "
+                                        "without a ground, or give both a ground",
+                                        ""});
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress,
                                 picture.report);
     const auto samples = std::uint32_t(options.samples);

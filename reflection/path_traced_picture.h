@@ -9,8 +9,8 @@ namespace kokage {
 /// them), lights and the remainder sampled, gloss (gloss.h) sampled by its lobe at every vertex. Solved radiance in
 /// `scene` is not read. The ground is the scene's own, or a plane as PictureGround says; a backdrop that plays the
 /// ground has no truth, so PictureGround::automatic in an environment with a lower half draws no ground unless the
-/// scene has one. `options.samples` paths a pixel; light_samples and pixel_shadows are not used. The same bits for any
-/// number of threads. Throws InputError, Stopped.
+/// scene has one; the report says so. `options.samples` paths a pixel; light_samples and pixel_shadows are not used.
+/// The same bits for any number of threads. Throws InputError, Stopped.
 Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
                            const Camera& camera, const PictureOptions& options, Progress& progress);
 
