@@ -229,8 +229,13 @@ glm::dvec3 JsonReader::vector(double low, double high) const {
     return {parts[0].number(low, high), parts[1].number(low, high), parts[2].number(low, high)};
 }
 
-glm::vec3 JsonReader::color(float high) const {
-    return is_number() ? glm::vec3(float(number(0, double(high)))) : glm::vec3(vector(0, double(high)));
+glm::vec3 JsonReader::color(double high) const {
+    if (is_number())
+        return glm::vec3(float(number(0, high)));
+    if (!is_array())
+        fail("found " + found() + " where a number (a grey) or a list [ ] of 3, each from " + range_text(0, high) +
+             ", is needed");
+    return vector(0, high);
 }
 
 } // namespace kokage

@@ -58,7 +58,7 @@ class JsonReader {
     /// Three numbers within [low, high].
     glm::dvec3 vector(double low, double high) const;
     /// One number for all channels, or three.
-    glm::vec3 color(float high = 1.f) const;
+    glm::vec3 color(double high = 1) const;
 
     const std::string& pointer() const { return pointer_; }
 

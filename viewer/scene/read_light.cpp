@@ -6,7 +6,7 @@
 namespace kokage {
 namespace {
 
-constexpr float kMostLight = 1e30f;
+constexpr double kMostLight = 1e30;
 
 std::string color_text(const glm::vec3& color) {
     return number_text(double(color.r)) + "," + number_text(double(color.g)) + "," + number_text(double(color.b));
@@ -65,6 +65,10 @@ void read_environment(const JsonReader& json, const SceneFiles& files, SceneDesc
     if (json.is_string()) {
         if (json.text() == "sky")
             scene.surroundings.environment = "sky";
+        else if (json.text() == "constant" || json.text() == "gradient")
+            json.fail("'" + json.text() +
+                      "' needs its colours: {\"constant\": 1} or {\"gradient\": {\"zenith\": ..., "
+                      "\"horizon\": ..., \"nadir\": ...}}");
         else
             read_image(json, json, files, scene);
         return;

@@ -141,6 +141,7 @@ TEST(ReadScene, RefusesBadLightAndGround) {
         {"/enviroment", "\"sky\"", "nothing is called 'enviroment' here; did you mean 'environment'?"},
         {"/zzzzzz", "1", "nothing is called 'zzzzzz' here; there are: $schema, kokage_scene, environment"},
         {"/environment", "7", "/environment: found 7 where an object { } is needed, with: sky, image"},
+        {"/environment", "\"constant\"", "/environment: 'constant' needs its colours: {\"constant\": 1} or"},
         {"/environment", "\"studoi.hdr\"", "/environment: there is no file 'studoi.hdr' beside the scene"},
         {"/environment/image", "\"studoi.hdr\"", "; did you mean 'studio.hdr'?"},
         {"/environment/image", "\"folder.png\"", "/environment/image: 'folder.png' is a folder; give a file (.hdr"},
@@ -165,6 +166,9 @@ TEST(ReadScene, RefusesBadLightAndGround) {
         {"/lights/3/point", "[1, 2, 1e9]", "/lights/3/point/2: found 1000000000.0 where a number from -1000000"},
         {"/ground", "3", "/ground: found 3 where an object { } is needed, with: albedo"},
         {"/ground/albedo", "1.5", "/ground/albedo: found 1.5 where a number from 0 to 1"},
+        {"/ground/albedo", "null",
+         "/ground/albedo: found null where a number (a grey) or a list [ ] of 3, each from 0 to 1"},
+        {"/lights/0/irradiance", "-1", "/lights/0/irradiance: found -1 where a number from 0 to 1e+30 is needed"},
         {"/ground/albedo/1", "\"green\"", "/ground/albedo/1: found \"green\" where a number from 0 to 1"},
     });
 }
