@@ -51,7 +51,7 @@ struct RayQueries::Implementation {
         sort_triangles();
         if (triangles[0].empty() && triangles[1].empty())
             return;
-        device = rtcNewDevice(nullptr);
+        device = rtcNewDevice(std::getenv("KOKAGE_EMBREE"));
         if (!device)
             throw std::runtime_error("Embree could not start: error " +
                                      std::to_string(int(rtcGetDeviceError(nullptr))));
@@ -196,13 +196,16 @@ void reject_holes(const RTCFilterFunctionNArguments* arguments) {
 
 constexpr std::size_t kPacket = 16;
 
-/// As many rays as Embree takes together; those that were not set are left alone.
+/// As many rays as Embree takes together; those that were not set are left alone. Where the machine has no packets as
+/// wide, Embree splits them and asks only the rays themselves which of them are to be traced: those that end before
+/// they begin are not, and no number of theirs may be left to chance.
 struct RayPacket {
     alignas(64) int valid[kPacket] = {};
-    RTCRayHit16 query;
+    RTCRayHit16 query = {};
     RTCIntersectContext context;
 
     RayPacket() {
+        std::fill_n(query.ray.tfar, kPacket, -1.f);
         rtcInitIntersectContext(&context);
         context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
     }

@@ -22,7 +22,8 @@ struct RayHit {
 
 /// Embree's acceleration structure over a scene (which must outlive it). Thread-safe once built. The scene may be
 /// empty. Triangles without area are left out: no ray hits them. Any scale works: 1e-6 m and 1e6 m trees give the same
-/// hits.
+/// hits. The environment variable KOKAGE_EMBREE, where there is one, goes to Embree as its settings: "max_isa=avx2"
+/// traces as a machine without AVX-512 does.
 class RayQueries {
   public:
     explicit RayQueries(const PatchScene& scene);

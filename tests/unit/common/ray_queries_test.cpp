@@ -285,6 +285,31 @@ TEST(RayQueries, ManyRaysAtOnceFindWhatEachFindsAlone) {
     }
 }
 
+TEST(RayQueries, FindTheSameByAnyMachinesInstructions) {
+    // Embree splits packets that are wider than the machine's registers.
+    const PatchScene scene = test::random_crown(300, 3, {});
+    const RayQueries usual(scene);
+    for (const std::size_t count : {3u, 21u, 4000u}) {
+        const std::vector<Ray> rays = camera_like_rays(count);
+        std::vector<RayHit> hits(count), usual_hits(count);
+        std::vector<std::uint8_t> found(count), hidden(count), usual_found(count), usual_hidden(count);
+        usual.first_hits(rays, usual_hits, usual_found);
+        usual.occluded(rays, usual_hidden);
+        for (const char* instructions : {"max_isa=sse2", "max_isa=sse4.2", "max_isa=avx", "max_isa=avx2"}) {
+            setenv("KOKAGE_EMBREE", instructions, 1);
+            const RayQueries queries(scene);
+            unsetenv("KOKAGE_EMBREE");
+            queries.first_hits(rays, hits, found);
+            queries.occluded(rays, hidden);
+            std::size_t apart = 0;
+            for (std::size_t k = 0; k < count; ++k)
+                apart += found[k] != usual_found[k] || hidden[k] != usual_hidden[k] ||
+                         (found[k] && hits[k].triangle != usual_hits[k].triangle);
+            EXPECT_LE(apart, count / 1000) << instructions;
+        }
+    }
+}
+
 TEST(RayQueries, ManyRaysAtOnceInAnEmptyScene) {
     const PatchScene scene;
     const RayQueries queries(scene);
