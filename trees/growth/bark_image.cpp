@@ -32,12 +32,6 @@ constexpr std::array<BarkMeasures, 10> measures = {{
     {{0.130f, 0.082f, 0.062f}, {0.150f, 0.092f, 0.070f}, {0.140f, 0.100f, 0.080f}, 0.002f, 0.004f, 0.50f}, // cherry
 }};
 
-/// Birch, aspen and pine turn into something else as they age: young bark gives way to old, patch by patch, and both
-/// keep their colours. Of the others all bark darkens a little.
-bool turns_with_age(BarkKind kind) {
-    return kind == BarkKind::birch || kind == BarkKind::aspen || kind == BarkKind::pine;
-}
-
 glm::dvec3 mean_of(const Image& image) {
     glm::dvec3 sum(0.0);
     for (std::size_t i = 0; i < image.pixels.size(); ++i)
@@ -86,6 +80,10 @@ void set_range(Image& height) {
 }
 
 } // namespace
+
+bool turns_with_age(BarkKind kind) {
+    return kind == BarkKind::birch || kind == BarkKind::aspen || kind == BarkKind::pine;
+}
 
 glm::vec3 young_twig_color(BarkKind kind) {
     return measures.at(std::size_t(kind)).twig;

@@ -21,6 +21,10 @@ struct BarkImage {
 /// image with any number of threads. Throws std::invalid_argument unless 1 <= size <= 8192 and 0 <= age <= 1.
 BarkImage bark_image(BarkKind kind, float age, int size = 256);
 
+/// Birch, aspen and pine turn into something else as they age: young bark gives way to old, patch by patch, and both
+/// keep their colours. Of the others all bark darkens a little.
+bool turns_with_age(BarkKind kind);
+
 /// Colour of twigs in their first years.
 glm::vec3 young_twig_color(BarkKind kind);
 

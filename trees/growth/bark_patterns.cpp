@@ -178,7 +178,8 @@ BarkPattern::Point BarkPattern::pine(glm::vec2 uv) const {
     const float plate_height = on_plate * (0.55f + 0.25f * plate.value + 0.2f * layers);
     const glm::vec3 brown = (0.32f + 0.46f * plate_height + 0.18f * (grain - 0.5f)) *
                             glm::mix(glm::vec3(1.f, 0.66f, 0.47f), glm::vec3(1.f, 0.84f, 0.70f), layers);
-    const float old = smooth_step(0.25f, 0.75f, age_ + 0.5f * (noise(uv, 4, 4, 98) - 0.5f));
+    // Among the flakes stand as many plates as the age says, faint ones at first.
+    const float old = plate.value < age_ ? 0.35f + 0.65f * age_ : 0.f;
     return {glm::mix(0.5f + 0.15f * flake_height, plate_height, old), glm::mix(papery, 0.8f * brown, old)};
 }
 

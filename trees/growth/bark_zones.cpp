@@ -28,6 +28,8 @@ std::optional<Ageing> ageing(BarkKind kind) {
     }
 }
 
+/// Steps from young bark to old: from one to the next few of a pine's plates fall.
+constexpr float age_steps = 6;
 /// All wood but twigs, where it does not age: grown-up, not ancient.
 constexpr float common_age = 0.7f;
 constexpr float thickest_twig_m = 0.012f, thickest_twig_share = 0.16f;
@@ -67,9 +69,9 @@ BarkZone bark_zone(const BarkPlace& place, const GrowthParameters& p, float trun
     if (!place.on_trunk)
         return {.is_twig = false, .age = 0};
     Random random(p.seed, streams::of(streams::bark_zone, patch));
-    const float height = place.height_m / std::max(tree_height_m, 1e-6f) * random.uniform(0.75f, 1.25f);
+    const float height = place.height_m / std::max(tree_height_m, 1e-6f) * random.uniform(0.95f, 1.05f);
     const float age = (change->young_above - height) / (change->young_above - change->old_below);
-    return {.is_twig = false, .age = std::clamp(std::round(3 * age), 0.f, 3.f) / 3};
+    return {.is_twig = false, .age = std::clamp(std::round(age_steps * age), 0.f, age_steps) / age_steps};
 }
 
 BarkInZones split_by_zone(const TreePart& bark, const std::vector<BarkPlace>& places, const GrowthParameters& p) {

