@@ -1,4 +1,6 @@
 #include "tests/benchmark/render_skips.h"
+#include "common/scene/image_file.h"
+#include "common/services/random.h"
 #include "common/services/stopwatch.h"
 #include "tests/benchmark/markdown.h"
 #include "tests/benchmark/render_scenes.h"
@@ -16,6 +18,7 @@ struct SkipCase {
     std::string said; ///< by which the report's line about it begins
     SceneDescription scene;
     std::function<void(RenderOptions&)> switch_off;
+    bool of_loading = false; ///< switched off while the scene is put together, which is timed too
 };
 
 SceneDescription matt(SceneDescription scene) {
@@ -51,6 +54,22 @@ SceneDescription lamp_lit(SceneDescription scene) {
     return scene;
 }
 
+/// A material that nothing wears, of the size of those that are downloaded. What an image shows is no matter to its
+/// loading, but that it can't be compressed to nothing is.
+SceneDescription with_unworn_textures(SceneDescription scene, const std::filesystem::path& folder) {
+    constexpr int kSize = 2048;
+    scene.name += ", an unworn material of " + std::to_string(kSize) + "² texels";
+    Image noise(kSize, kSize, 3);
+    Random random(1, 0);
+    for (float& value : noise.pixels)
+        value = random.uniform();
+    MaterialDescription& unworn = scene.materials["unworn"];
+    unworn.pointer = "/materials/unworn";
+    unworn.base_color_texture = unworn.roughness_texture = folder / "unworn.png";
+    save_image(unworn.base_color_texture, noise);
+    return scene;
+}
+
 std::vector<SkipCase> cases(int width, int height, const std::filesystem::path& data,
                             const std::filesystem::path& folder) {
     const std::vector<SceneDescription> scenes = render_scenes(width, height, data, folder);
@@ -68,6 +87,7 @@ std::vector<SkipCase> cases(int width, int height, const std::filesystem::path& 
         {"paths that check what is gathered", "check of the leaves", young(scenes[0]),
          [](RenderOptions& o) { o.skip_check_by_paths = false; }},
         {"weak lights", "", lamp_lit(scenes[0]), [](RenderOptions& o) { o.merge_weak_lights = false; }},
+        {"textures that nothing wears", "1 material", with_unworn_textures(scenes[1], folder), nullptr, true},
     };
 }
 
@@ -80,11 +100,14 @@ std::string said_about(const SkipCase& skip, const WorkReport& report) {
     return "nothing was left out";
 }
 
-PictureRecord draw(const AssembledScene& scene, const SkipCase& skip, bool on, Progress& progress, Image& radiance) {
+PictureRecord draw(const SkipCase& skip, bool on, Progress& progress, Image& radiance) {
+    AssemblyOptions assembly;
     RenderOptions options;
     options.picture = skip.scene.picture;
     options.picture.samples = kSamples;
-    if (!on)
+    if (!on && skip.of_loading)
+        assembly.skip_unworn_materials = false;
+    else if (!on)
         skip.switch_off(options);
     PictureRecord record;
     record.scene = skip.scene.name;
@@ -95,12 +118,15 @@ PictureRecord draw(const AssembledScene& scene, const SkipCase& skip, bool on, P
     record.samples = kSamples;
     record.error = options.error;
     for (int run = 0; run < kRuns; ++run) {
-        const Stopwatch watch;
+        const Stopwatch whole;
+        const AssembledScene scene = assemble_scene(skip.scene, progress, assembly);
+        const double loading = skip.of_loading ? 0 : whole.cpu();
         const RenderedScene rendered = render_scene(scene, options, progress);
-        record.cpu_seconds = run == 0 ? watch.cpu() : std::min(record.cpu_seconds, watch.cpu());
+        const double seconds = whole.cpu() - loading;
+        record.cpu_seconds = run == 0 ? seconds : std::min(record.cpu_seconds, seconds);
         radiance = rendered.picture.radiance;
         if (on)
-            record.note = said_about(skip, rendered.report);
+            record.note = said_about(skip, skip.of_loading ? scene.report : rendered.report);
     }
     return record;
 }
@@ -119,10 +145,9 @@ double change(const Image& on, const Image& off) {
 void measure_skips(const RenderPlan& plan, const std::filesystem::path& data, const std::filesystem::path& folder,
                    Progress& progress, const std::function<void(const PictureRecord&)>& take) {
     for (const SkipCase& skip : cases(plan.width / 2, plan.height / 2, data, folder)) {
-        const AssembledScene scene = assemble_scene(skip.scene, progress);
         Image with, without;
-        PictureRecord on = draw(scene, skip, true, progress, with);
-        const PictureRecord off = draw(scene, skip, false, progress, without);
+        PictureRecord on = draw(skip, true, progress, with);
+        const PictureRecord off = draw(skip, false, progress, without);
         on.change_by_skip = change(with, without);
         take(on);
         take(off);

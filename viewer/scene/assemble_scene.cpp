@@ -57,8 +57,8 @@ glm::dvec3 foot_of(const Tree& tree, const Box& box) {
 
 class SceneAssembly {
   public:
-    SceneAssembly(const SceneDescription& description, Progress& progress)
-        : description_(description), messages_(description.file), progress_(progress),
+    SceneAssembly(const SceneDescription& description, const AssemblyOptions& options, Progress& progress)
+        : description_(description), options_(options), messages_(description.file), progress_(progress),
           surfaces_(description, messages_) {}
 
     AssembledScene assemble() {
@@ -285,6 +285,8 @@ class SceneAssembly {
                 scene_.tree_parts = scene_.tree.parts.size();
             progress_.advance(1);
         }
+        if (!options_.skip_unworn_materials)
+            surfaces_.load_unworn();
         trees_.clear();
         objects_.clear();
         things_.clear();
@@ -360,7 +362,8 @@ class SceneAssembly {
     void report() {
         WorkReport& report = scene_.report;
         report.stages = clock_.stages();
-        surfaces_.report_skips(report);
+        if (options_.skip_unworn_materials)
+            surfaces_.report_skips(report);
         report.counts.push_back({"trees", description_.trees.size()});
         report.counts.push_back({"objects", description_.objects.size()});
         report.counts.push_back({"leaves", scene_.tree.leaves.size()});
@@ -369,6 +372,7 @@ class SceneAssembly {
     }
 
     const SceneDescription& description_;
+    const AssemblyOptions options_;
     const SceneMessages messages_;
     Progress& progress_;
     StageClock clock_;
@@ -393,8 +397,8 @@ ShadedScene unlit_scene(const AssembledScene& scene) {
     return shaded;
 }
 
-AssembledScene assemble_scene(const SceneDescription& description, Progress& progress) {
-    return SceneAssembly(description, progress).assemble();
+AssembledScene assemble_scene(const SceneDescription& description, Progress& progress, const AssemblyOptions& options) {
+    return SceneAssembly(description, options, progress).assemble();
 }
 
 } // namespace kokage

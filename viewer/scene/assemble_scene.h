@@ -30,8 +30,13 @@ struct AssembledScene {
 /// What pictures are made of, still without light: for path tracing. `scene` must outlive it.
 ShadedScene unlit_scene(const AssembledScene& scene);
 
+struct AssemblyOptions {
+    bool skip_unworn_materials = true; ///< textures of materials that nothing wears are not loaded
+};
+
 /// Loads, grows, places, merges. Memory is estimated before it is taken (InputError says what to reduce). Throws
 /// InputError, Stopped.
-AssembledScene assemble_scene(const SceneDescription& description, Progress& progress);
+AssembledScene assemble_scene(const SceneDescription& description, Progress& progress,
+                              const AssemblyOptions& options = {});
 
 } // namespace kokage

@@ -144,15 +144,29 @@ void SceneSurfaces::take_gloss_off(const Tree& tree, const PatchOrigins& origins
     }
 }
 
-void SceneSurfaces::report_skips(WorkReport& report) const {
-    std::size_t unused = 0;
-    std::string names;
+std::vector<std::string> SceneSurfaces::unworn() const {
+    std::vector<std::string> names;
     for (const auto& [name, material] : description_.materials)
         if (!used_materials_.contains(name))
-            names += (unused++ == 0 ? "'" : ", '") + shown_name(name) + "'";
-    if (unused > 0)
+            names.push_back(name);
+    return names;
+}
+
+void SceneSurfaces::load_unworn() {
+    for (const std::string& name : unworn()) {
+        const MaterialDescription& material = description_.materials.at(name);
+        messages_.told_at(material.pointer, [&] { return changed_surface({}, material, textures_); });
+    }
+}
+
+void SceneSurfaces::report_skips(WorkReport& report) const {
+    const std::vector<std::string> names = unworn();
+    std::string listed;
+    for (const std::string& name : names)
+        listed += (listed.empty() ? "'" : ", '") + shown_name(name) + "'";
+    if (!names.empty())
         report.skips.push_back(
-            {counted(unused, "material", "materials"), "nothing wears " + names, "loading their textures"});
+            {counted(names.size(), "material", "materials"), "nothing wears " + listed, "loading their textures"});
 }
 
 } // namespace kokage

@@ -39,12 +39,17 @@ class SceneSurfaces {
     /// What mirrors does not scatter twice. After looks().
     void take_gloss_off(const Tree& tree, const PatchOrigins& origins, PatchScene& patches) const;
 
+    /// Loads the textures of materials that nothing wears, which is of no use but to measure. After all dress(). Throws
+    /// InputError.
+    void load_unworn();
+
     /// Tells the materials that nothing wears.
     void report_skips(WorkReport& report) const;
 
   private:
     const MaterialDescription* material_named(const std::string& name, const std::string& pointer);
     std::uint32_t add_surface(const Wearer& wearer, std::size_t material, const std::string& name, Tree& all);
+    std::vector<std::string> unworn() const; ///< names of materials
     LookRelief relief_of(const SceneSurface& surface, TreePartKind kind, MaterialReliefs& heights, WorkReport& report);
     void warn_of_idle_reliefs(const Tree& tree, const std::vector<SurfaceLook>& looks, WorkReport& report) const;
 

@@ -1,4 +1,5 @@
 // What a picture has no use for is not made, and the report says so: on grown trees, with their own bark.
+#include "common/services/error.h"
 #include "viewer/scene/render_scene.h"
 
 #include <algorithm>
@@ -68,6 +69,17 @@ TEST(RenderSkips, NoGlossNoBake) {
     const Drawn matt(scene);
     EXPECT_NE(matt.skipped("reflection map").find("nothing glossy"), std::string::npos);
     EXPECT_EQ(matt.count("texels"), 0u);
+}
+
+TEST(RenderSkips, NoTexturesThatNothingWears) {
+    SceneDescription scene = oak_from(3);
+    scene.materials["unworn"].pointer = "/materials/unworn";
+    scene.materials["unworn"].base_color_texture = "there is no such file.png";
+    const AssembledScene assembled = assemble_scene(scene, silent_progress());
+    ASSERT_EQ(assembled.report.skips.size(), 1u);
+    EXPECT_EQ(assembled.report.skips[0].why, "nothing wears 'unworn'");
+    // With the skip switched off it is looked for.
+    EXPECT_THROW((void)assemble_scene(scene, silent_progress(), {.skip_unworn_materials = false}), InputError);
 }
 
 TEST(RenderSkips, NoLobesButThoseThatAreWorn) {
