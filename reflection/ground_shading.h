@@ -1,6 +1,6 @@
 #pragma once
 // The radiance of the ground under a scene, where a camera ray meets it.
-#include "reflection/ground_look.h"
+#include "reflection/backdrop_ground.h"
 #include "reflection/ground_sky_light.h"
 #include "reflection/surface_shading.h"
 
@@ -36,22 +36,22 @@ class GroundShading {
 
     /// The ground at that distance (GroundLook::distance), towards the ray's origin. Black from below.
     UnlitGround unlit(const glm::vec3& origin, const glm::vec3& direction, float distance) const;
-    /// For rays that left the scene: of the mean soil, without air before it and without split-off lights
-    /// in the backdrop, which are tested by themselves.
-    glm::vec3 met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, SampleIndex sample,
-                           ShadingScratch& scratch) const;
+    /// For rays that left the scene: of the mean soil, without air before it. `lights`: what a backdrop that plays the
+    /// ground shows there of the split-off lights, unless they are tested by themselves.
+    glm::vec3 met_radiance(const glm::vec3& origin, const glm::vec3& direction, float distance, const glm::vec3& lights,
+                           SampleIndex sample, ShadingScratch& scratch) const;
 
   private:
     UnlitGround diffuse_plane(const glm::vec3& point, const glm::vec3& albedo) const;
     /// `seen`: what the backdrop shows there.
-    UnlitGround shadowed_backdrop(const glm::vec3& point, const glm::vec3& seen) const;
+    UnlitGround changed_backdrop(const glm::vec3& point, const glm::vec3& seen) const;
 
     const RayQueries& queries_;
     const Backdrop& backdrop_;
     const GroundLook& look_;
     const LightChoice& lights_;
     std::optional<GroundSkyLight> light_;
-    glm::vec3 backdrop_irradiance_{0.f}; ///< upwards, open: what lit the ground that the backdrop shows
+    std::optional<BackdropGround> backdrop_ground_; ///< if the backdrop plays the ground
 };
 
 } // namespace kokage

@@ -60,12 +60,17 @@ glm::vec3 GroundSkyLight::Level::interpolated(const glm::vec2& place) const {
     return sum;
 }
 
-GroundSkyLight::GroundSkyLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop,
-                               float height, Progress& progress) {
+glm::vec3 GroundSkyLight::open_irradiance(const Backdrop& backdrop, bool from_below) {
+    const glm::vec3 side(1.f, from_below ? -1.f : 1.f, 1.f);
     glm::dvec3 open(0.0);
     for (std::uint32_t k = 0; k < kOpenDirections; ++k)
-        open += glm::dvec3(backdrop.remainder(cosine_direction(multi_jittered(k, kOpenDirections, kPattern))));
-    open_ = glm::vec3(open * (kPiDouble / kOpenDirections));
+        open += glm::dvec3(backdrop.remainder(side * cosine_direction(multi_jittered(k, kOpenDirections, kPattern))));
+    return glm::vec3(open * (kPiDouble / kOpenDirections));
+}
+
+GroundSkyLight::GroundSkyLight(const ShadedScene& scene, const RayQueries& queries, const Backdrop& backdrop,
+                               float height, Progress& progress)
+    : open_(open_irradiance(backdrop)) {
     if (scene.patches->triangles.empty())
         return;
     place_levels(*scene.patches);

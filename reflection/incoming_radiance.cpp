@@ -53,7 +53,7 @@ std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const 
     if (met.surface)
         return surfaces_.met_radiance(*met.surface, direction, {}, sample, scratch);
     if (met.ground_distance < kInfinity)
-        return ground_light_.met_radiance(origin, direction, met.ground_distance, sample, scratch);
+        return ground_light_.met_radiance(origin, direction, met.ground_distance, glm::vec3(0.f), sample, scratch);
     return std::nullopt;
 }
 
@@ -69,7 +69,9 @@ std::optional<glm::vec3> IncomingRadiance::through_lobe(const glm::vec3& origin,
         const Met met = first_met(from, along, scratch);
         if (!met.surface) {
             if (met.ground_distance < kInfinity)
-                return seen + share * ground_light_.met_radiance(from, along, met.ground_distance, sample, scratch);
+                return seen + share * ground_light_.met_radiance(from, along, met.ground_distance,
+                                                                 wide_lights_in(environment_, along, roughness), sample,
+                                                                 scratch);
             return mirrors > 0 ? std::optional(seen + share * surroundings(along, roughness)) : std::nullopt;
         }
         const SurfacePoint& at = *met.surface;

@@ -31,9 +31,11 @@ glm::vec3 lobe_of(const PathVertex& vertex, const glm::vec3& direction) {
 
 } // namespace
 
-PathIntegrator::PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment)
+PathIntegrator::PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                               const BackdropGround* backdrop_ground)
     : queries_(queries), patches_(*scene.patches), environment_(environment), points_(scene),
-      remainder_(environment.remainder), lights_(environment), offset_(queries.ray_offset()) {
+      remainder_(environment.remainder), lights_(environment), backdrop_ground_(backdrop_ground),
+      offset_(queries.ray_offset()) {
     if (remainder_.contrast() > kLowContrast)
         remainder_share_ = 0.5f * (1 - std::sqrt(float(kLowContrast / remainder_.contrast())));
 }
@@ -128,11 +130,18 @@ PathIntegrator::Step PathIntegrator::scatter(const PathVertex& vertex, PathNumbe
     return step;
 }
 
+/// `roughness`: of the surface that the step leaves.
+glm::vec3 PathIntegrator::surroundings(const Step& step, float roughness) const {
+    const glm::vec3 remainder = remainder_.radiance(step.direction);
+    return step.glossy ? remainder + wide_lights_in(environment_, step.direction, roughness) : remainder;
+}
+
 SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) const {
     const LightFromLights first = light(vertex, numbers);
     SurfaceRadiance seen{first.scattered, glm::vec3(0.f), first.reflected};
     glm::vec3 bounced(0.f), throughput(1.f);
     bool by_gloss = false; ///< the first bounce
+    bool met_backdrop_ground = vertex.on_backdrop;
     for (int bounce = 0;; ++bounce) {
         if (bounce > 0) {
             const LightFromLights lights = light(vertex, numbers);
@@ -151,12 +160,26 @@ SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers
             continue;
         }
         const glm::vec3 origin = start(vertex, step.direction);
+        float ground_distance = INFINITY, hidden_from = INFINITY;
+        if (backdrop_ground_) {
+            ground_distance = backdrop_ground_->look().distance(origin, step.direction);
+            hidden_from = backdrop_ground_->look().distance_to_surfaces(ground_distance, step.direction);
+        }
         RayHit hit;
-        if (!queries_.first_hit(origin, step.direction, 0, INFINITY, hit)) {
-            bounced += throughput * remainder_.radiance(step.direction);
-            if (step.glossy)
-                bounced += throughput * wide_lights_in(environment_, step.direction, vertex.roughness);
-            break;
+        if (!queries_.first_hit(origin, step.direction, 0, hidden_from, hit)) {
+            const glm::vec3 arriving = surroundings(step, vertex.roughness);
+            if (!(ground_distance < INFINITY) || met_backdrop_ground) {
+                bounced += throughput * arriving;
+                break;
+            }
+            if (step.direction.y >= 0) // its underside
+                break;
+            const glm::vec3 point = backdrop_ground_->look().point(origin, step.direction, ground_distance);
+            const BackdropGround::Share share = backdrop_ground_->share(point, arriving);
+            bounced += throughput * share.unchanged;
+            vertex = ground_vertex(point, share.albedo);
+            met_backdrop_ground = true;
+            continue;
         }
         if (hit.ground && step.direction.y >= 0) // its underside
             break;

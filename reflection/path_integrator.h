@@ -3,6 +3,7 @@
 #include "common/trace/light_sampler.h"
 #include "common/trace/path_numbers.h"
 #include "common/trace/remainder_sampler.h"
+#include "reflection/backdrop_ground.h"
 #include "reflection/surface_points.h"
 #include "reflection/surface_shading.h"
 
@@ -19,14 +20,19 @@ struct PathVertex {
     float roughness = 1;
     glm::vec3 mirrored{0.f};
     std::optional<ReliefPoint> relief; ///< that it lies on
+    bool on_backdrop = false;          ///< on a ground that the backdrop plays
 };
 
 /// Path tracing after Kajiya 1986 with light sampling. What a light sends through a lobe is found by sampling the light
-/// where the lobe is the wider of both, else by sampling the lobe, so that neither makes noise. Thread-safe.
+/// where the lobe is the wider of both, else by sampling the lobe, so that neither makes noise.
+///
+/// The first backdrop's ground on a path is lit as the scene lets it, the next one is as the image shows it: an image
+/// that is brighter below the horizon than above would have light grow from bounce to bounce. Thread-safe.
 class PathIntegrator {
   public:
-    /// All must outlive it.
-    PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment);
+    /// All must outlive it. `backdrop_ground`: null where the backdrop plays no ground.
+    PathIntegrator(const ShadedScene& scene, const RayQueries& queries, const Environment& environment,
+                   const BackdropGround* backdrop_ground);
 
     /// What a vertex sends to where it is seen from: one path with all its bounces.
     SurfaceRadiance radiance(PathVertex vertex, PathNumbers& numbers) const;
@@ -48,6 +54,7 @@ class PathIntegrator {
     Step scatter(const PathVertex& vertex, PathNumbers& numbers) const;
     Step scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const;
     glm::vec3 start(const PathVertex& vertex, const glm::vec3& direction) const;
+    glm::vec3 surroundings(const Step& step, float roughness) const;
 
     const RayQueries& queries_;
     const PatchScene& patches_;
@@ -55,6 +62,7 @@ class PathIntegrator {
     const SurfacePoints points_;
     const RemainderSampler remainder_;
     const LightSampler lights_;
+    const BackdropGround* backdrop_ground_;
     float remainder_share_ = 0; ///< of diffuse directions, drawn towards the remainder's bright parts
     float offset_ = 0;          ///< metres
 };

@@ -2,14 +2,15 @@
 #include "common/services/error.h"
 #include "common/services/parallel.h"
 #include "common/services/random.h"
+#include "reflection/backdrop_ground.h"
 #include "reflection/camera_rays.h"
-#include "reflection/ground_look.h"
 #include "reflection/path_integrator.h"
 #include "reflection/relief_surfaces.h"
 #include "reflection/seen_by_ray.h"
 
 #include <algorithm>
 #include <limits>
+#include <optional>
 
 namespace kokage {
 namespace {
@@ -20,6 +21,7 @@ struct TruthOfPicture {
     const RayQueries& queries;
     const Backdrop& backdrop;
     const GroundLook& ground;
+    const BackdropGround* backdrop_ground; ///< null where the backdrop plays no ground
     const PathIntegrator& paths;
 
     SeenByRay seen(const glm::vec3& origin, const CameraHit& hit, PathNumbers& numbers) const {
@@ -35,6 +37,8 @@ struct TruthOfPicture {
         if (direction.y >= 0)
             return SeenByRay::ground_at(glm::vec3(0.f), ground_distance, {});
         const glm::vec3 point = ground.point(origin, direction, ground_distance);
+        if (backdrop_ground)
+            return SeenByRay::ground_at(glm::vec3(0.f), ground_distance, changed_backdrop(point, direction, numbers));
         const float clear = ground.clear(ground_distance);
         const glm::vec3 albedo = ground.albedo(point, direction, ground_distance);
         SurfaceRadiance light = paths.radiance(PathIntegrator::ground_vertex(point, albedo), numbers);
@@ -42,13 +46,19 @@ struct TruthOfPicture {
         light.indirect = clear * light.indirect + (1 - clear) * ground.haze(direction);
         return SeenByRay::ground_at(albedo, ground_distance, light);
     }
-};
 
-/// A backdrop that plays the ground: how bright it would be without the scene is seen, how it is lit is not.
-bool leaves_ground_out(const ShadedScene& scene, const Environment& environment, const PictureOptions& options) {
-    return environment.has_lower_half && options.ground == PictureGround::automatic && !scene.patches->ground &&
-           !scene.patches->triangles.empty();
-}
+    SurfaceRadiance changed_backdrop(const glm::vec3& point, const glm::vec3& direction, PathNumbers& numbers) const {
+        const BackdropGround::Share share = backdrop_ground->share(point, backdrop.seen(direction));
+        SurfaceRadiance light;
+        if (share.albedo != glm::vec3(0.f)) {
+            PathVertex vertex = PathIntegrator::ground_vertex(point, share.albedo);
+            vertex.on_backdrop = true;
+            light = paths.radiance(vertex, numbers);
+        }
+        light.indirect += share.unchanged;
+        return light;
+    }
+};
 
 } // namespace
 
@@ -57,22 +67,17 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     check_picture_options(options);
     if (!scene.patches)
         throw InputError("picture: there is no scene of patches");
-    PictureOptions with_true_ground = options;
-    if (environment.has_lower_half)
-        with_true_ground.ground = PictureGround::none;
     const CameraFrame frame = camera_frame(camera, options.width, options.height);
     const Backdrop backdrop(environment);
-    const GroundLook ground(scene, queries, environment, backdrop, camera, with_true_ground);
-    const PathIntegrator paths(scene, queries, environment);
-    const TruthOfPicture truth{queries, backdrop, ground, paths};
+    const GroundLook ground(scene, queries, environment, backdrop, camera, options);
+    std::optional<BackdropGround> backdrop_ground;
+    if (ground.height() && !ground.mean_albedo())
+        backdrop_ground.emplace(environment, backdrop, ground);
+    const BackdropGround* changed = backdrop_ground ? &*backdrop_ground : nullptr;
+    const PathIntegrator paths(scene, queries, environment, changed);
+    const TruthOfPicture truth{queries, backdrop, ground, changed, paths};
 
     Picture picture = empty_picture(options);
-    if (leaves_ground_out(scene, environment, options))
-        picture.report.skips.push_back({"the scene's shade on the surroundings' lower half",
-                                        "what lights the ground that an image shows is not known, so there is no "
-                                        "truth; compare with fast pictures "
-                                        "without a ground, or give both a ground",
-                                        ""});
     const ReliefSurfaces relief(scene, queries, environment, frame, options.skips.thin_relief, progress,
                                 picture.report);
     const auto samples = std::uint32_t(options.samples);

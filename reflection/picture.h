@@ -70,8 +70,7 @@ struct ShadedScene {
 /// What lies under the scene in the picture.
 enum class PictureGround {
     /// The scene's own ground if it has one. Else, where the environment has a lower half, that half stays and only
-    /// takes the
-    /// scene's shadow and bounced light, near the scene. Else a plane of albedo 0.2 under the lowest point.
+    /// takes the scene's shadow and bounced light, near the scene. Else a plane of albedo 0.2 under the lowest point.
     automatic,
     none ///< nothing but the scene's own ground
 };

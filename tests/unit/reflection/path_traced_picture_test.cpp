@@ -3,7 +3,6 @@
 #include "reflection/path_traced_picture.h"
 #include "tests/unit/reflection/ball.h"
 
-#include <algorithm>
 #include <cmath>
 #include <gtest/gtest.h>
 
@@ -69,29 +68,6 @@ TEST(PathTracedPicture, SunsGlintIsTheSameByBothMethods) {
             mean_of(render_path_traced(ball.scene, queries, sun, camera, options, silent_progress()).radiance);
         EXPECT_NEAR(fast.x / truth.x, 1, 0.02) << roughness;
     }
-}
-
-TEST(PathTracedPicture, SaysThatItLeavesTheShadeOnABackdropOut) {
-    Environment photograph = constant_environment(glm::vec3(1.f));
-    photograph.has_lower_half = true;
-    Environment sky = photograph;
-    sky.has_lower_half = false;
-    Ball ball({glm::vec3(0.3f), glm::vec3(0.f)}, Gloss{});
-    PictureOptions options = small_picture(4, 4, 1);
-    const auto says_so = [&](const Environment& environment) {
-        const Picture picture = render_path_traced(ball.scene, RayQueries(ball.patches), environment, close_camera(),
-                                                   options, silent_progress());
-        return std::any_of(picture.report.skips.begin(), picture.report.skips.end(), [](const WorkReport::Skip& skip) {
-            return skip.what == "the scene's shade on the surroundings' lower half";
-        });
-    };
-    EXPECT_TRUE(says_so(photograph));
-    EXPECT_FALSE(says_so(sky));
-    options.ground = PictureGround::none;
-    EXPECT_FALSE(says_so(photograph));
-    options.ground = PictureGround::automatic;
-    ball.patches.ground = Ground{-2, glm::vec3(0.2f)};
-    EXPECT_FALSE(says_so(photograph));
 }
 
 TEST(PathTracedPicture, SameBitsForAnyNumberOfThreads) {
