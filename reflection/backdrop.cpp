@@ -69,8 +69,8 @@ glm::vec3 Backdrop::remainder(const glm::vec3& direction) const {
     return smooth_lookup(image, direction, last_row);
 }
 
-glm::vec3 Backdrop::seen(const glm::vec3& direction) const {
-    glm::vec3 radiance = remainder(direction);
+glm::vec3 Backdrop::lights(const glm::vec3& direction) const {
+    glm::vec3 radiance(0.f);
     if (!regions_.empty())
         radiance += smooth_lookup(regions_, direction, regions_.height - 1);
     for (const Disc& disc : discs_)

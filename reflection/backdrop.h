@@ -15,9 +15,10 @@ class Backdrop {
     /// Radiance without the split-off lights. Under a sky with no lower half, directions below the horizon see the
     /// horizon.
     glm::vec3 remainder(const glm::vec3& direction) const;
-    /// Radiance as a camera sees it: remainder, bright regions at the pixels that they were cut from, discs of suns.
-    /// Lights without a size can't be seen.
-    glm::vec3 seen(const glm::vec3& direction) const;
+    /// Radiance of the split-off lights as a camera sees them: bright regions at the pixels that they were cut from,
+    /// discs of suns. Lights without a size can't be seen.
+    glm::vec3 lights(const glm::vec3& direction) const;
+    glm::vec3 seen(const glm::vec3& direction) const { return remainder(direction) + lights(direction); }
 
   private:
     struct Disc {

@@ -8,9 +8,6 @@ namespace {
 
 /// In the scene's radii: up to the first the light changes in full, from the second on not at all.
 constexpr float kChanged = 4, kUnchanged = 12;
-/// What sends a thousand times the light that comes down on it shines by itself. (Enlarged smoothly, a black sky gets a
-/// little light from below the horizon.)
-constexpr float kShines = 1000;
 
 } // namespace
 
@@ -19,23 +16,21 @@ BackdropGround::BackdropGround(const Environment& environment, const Backdrop& b
     for (const DistantLight& light : environment.distant_lights)
         for (const DistantLight::Texel& texel : light.texels)
             open_irradiance_ += texel.irradiance * std::max(0.f, texel.direction.y);
-    const glm::vec3 shown = GroundSkyLight::open_irradiance(backdrop, true);
-    for (glm::length_t c = 0; c < 3; ++c)
-        if (shown[c] > kShines * open_irradiance_[c])
-            open_irradiance_[c] = 0;
 }
 
-BackdropGround::Share BackdropGround::share(const glm::vec3& point, const glm::vec3& seen) const {
+BackdropGround::Share BackdropGround::share(const glm::vec3& point, const glm::vec3& shown,
+                                            const glm::vec3& lights) const {
     const float near = std::clamp((kUnchanged - look_.away(point)) / (kUnchanged - kChanged), 0.f, 1.f);
-    Share share{seen, glm::vec3(0.f)};
+    Share share{shown + lights, glm::vec3(0.f)};
     if (near <= 0)
         return share;
     const float change = near * near * (3 - 2 * near);
     for (glm::length_t c = 0; c < 3; ++c)
         if (open_irradiance_[c] > 0) {
-            share.unchanged[c] *= 1 - change;
-            share.albedo[c] = seen[c] * change * kPi / open_irradiance_[c];
+            share.albedo[c] = std::min(change * shown[c] * kPi / open_irradiance_[c], 1.f);
+            share.unchanged[c] -= share.albedo[c] / kPi * open_irradiance_[c];
         }
+    share.unchanged = glm::max(share.unchanged, glm::vec3(0.f));
     return share;
 }
 

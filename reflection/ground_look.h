@@ -17,7 +17,9 @@ class GroundLook {
 
     /// Empty if the picture has no ground.
     std::optional<float> height() const { return plane_ ? std::optional(plane_->height_m()) : std::nullopt; }
-    /// Empty: the backdrop is the ground, and takes shadows.
+    /// The backdrop plays the ground, which takes shadows.
+    bool is_backdrop() const { return plane_ && !albedo_; }
+    /// Empty if there is no ground, or the backdrop plays it.
     const std::optional<glm::vec3>& mean_albedo() const { return albedo_; }
     /// Distance at which a ray meets the ground; infinite if it doesn't.
     float distance(const glm::vec3& origin, const glm::vec3& direction) const;

@@ -9,7 +9,7 @@ GroundShading::GroundShading(const ShadedScene& scene, const RayQueries& queries
     if (!look.height())
         return;
     light_.emplace(scene, queries, backdrop, *look.height(), progress);
-    if (!look.mean_albedo())
+    if (look.is_backdrop())
         backdrop_ground_.emplace(environment, backdrop, look);
 }
 
@@ -18,7 +18,7 @@ UnlitGround GroundShading::unlit(const glm::vec3& origin, const glm::vec3& direc
         return {};
     const glm::vec3 point = look_.point(origin, direction, distance);
     if (!look_.mean_albedo())
-        return changed_backdrop(point, backdrop_.seen(direction));
+        return changed_backdrop(point, backdrop_.remainder(direction), backdrop_.lights(direction));
     // The plane of an exact model ends in a hard line at the horizon; air softens it towards the sky just above.
     const float clear = look_.clear(distance);
     UnlitGround ground;
@@ -35,7 +35,7 @@ glm::vec3 GroundShading::met_radiance(const glm::vec3& origin, const glm::vec3& 
         return glm::vec3(0.f);
     const glm::vec3 point = look_.point(origin, direction, distance);
     const UnlitGround ground = look_.mean_albedo() ? diffuse_plane(point, *look_.mean_albedo())
-                                                   : changed_backdrop(point, backdrop_.remainder(direction) + lights);
+                                                   : changed_backdrop(point, backdrop_.remainder(direction), lights);
     return ground.lit(light_from_lights(lights_, queries_, point, ground.scattering(), sample, scratch).scattered)
         .total;
 }
@@ -44,8 +44,9 @@ UnlitGround GroundShading::diffuse_plane(const glm::vec3& point, const glm::vec3
     return {point, albedo / kPi * light_->irradiance(point.x, point.z), glm::vec3(1.f), albedo, albedo};
 }
 
-UnlitGround GroundShading::changed_backdrop(const glm::vec3& point, const glm::vec3& seen) const {
-    const BackdropGround::Share share = backdrop_ground_->share(point, seen);
+UnlitGround GroundShading::changed_backdrop(const glm::vec3& point, const glm::vec3& shown,
+                                            const glm::vec3& lights) const {
+    const BackdropGround::Share share = backdrop_ground_->share(point, shown, lights);
     UnlitGround ground{point, share.unchanged, share.albedo, glm::vec3(0.f), glm::vec3(0.f)};
     if (share.albedo == glm::vec3(0.f))
         return ground;

@@ -43,8 +43,8 @@ class GroundShading {
 
   private:
     UnlitGround diffuse_plane(const glm::vec3& point, const glm::vec3& albedo) const;
-    /// `seen`: what the backdrop shows there.
-    UnlitGround changed_backdrop(const glm::vec3& point, const glm::vec3& seen) const;
+    /// As BackdropGround::share().
+    UnlitGround changed_backdrop(const glm::vec3& point, const glm::vec3& shown, const glm::vec3& lights) const;
 
     const RayQueries& queries_;
     const Backdrop& backdrop_;

@@ -60,11 +60,10 @@ glm::vec3 GroundSkyLight::Level::interpolated(const glm::vec2& place) const {
     return sum;
 }
 
-glm::vec3 GroundSkyLight::open_irradiance(const Backdrop& backdrop, bool from_below) {
-    const glm::vec3 side(1.f, from_below ? -1.f : 1.f, 1.f);
+glm::vec3 GroundSkyLight::open_irradiance(const Backdrop& backdrop) {
     glm::dvec3 open(0.0);
     for (std::uint32_t k = 0; k < kOpenDirections; ++k)
-        open += glm::dvec3(backdrop.remainder(side * cosine_direction(multi_jittered(k, kOpenDirections, kPattern))));
+        open += glm::dvec3(backdrop.remainder(cosine_direction(multi_jittered(k, kOpenDirections, kPattern))));
     return glm::vec3(open * (kPiDouble / kOpenDirections));
 }
 

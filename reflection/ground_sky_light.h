@@ -27,8 +27,8 @@ class GroundSkyLight {
 
     /// In radiance x sr, at a place of the plane; never negative.
     glm::vec3 irradiance(float x, float z) const;
-    /// The same without a scene; `from_below`: on the plane's underside.
-    static glm::vec3 open_irradiance(const Backdrop& backdrop, bool from_below = false);
+    /// The same without a scene.
+    static glm::vec3 open_irradiance(const Backdrop& backdrop);
 
   private:
     struct Level {

@@ -68,10 +68,11 @@ std::optional<glm::vec3> IncomingRadiance::through_lobe(const glm::vec3& origin,
     for (int mirrors = 0;; ++mirrors, sample.pattern += kMirrorPattern) {
         const Met met = first_met(from, along, scratch);
         if (!met.surface) {
-            if (met.ground_distance < kInfinity)
-                return seen + share * ground_light_.met_radiance(from, along, met.ground_distance,
-                                                                 wide_lights_in(environment_, along, roughness), sample,
-                                                                 scratch);
+            if (met.ground_distance < kInfinity) {
+                const glm::vec3 lights = has_ground() ? glm::vec3(0.f) : wide_lights_in(environment_, along, roughness);
+                return seen +
+                       share * ground_light_.met_radiance(from, along, met.ground_distance, lights, sample, scratch);
+            }
             return mirrors > 0 ? std::optional(seen + share * surroundings(along, roughness)) : std::nullopt;
         }
         const SurfacePoint& at = *met.surface;

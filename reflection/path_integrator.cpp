@@ -130,12 +130,6 @@ PathIntegrator::Step PathIntegrator::scatter(const PathVertex& vertex, PathNumbe
     return step;
 }
 
-/// `roughness`: of the surface that the step leaves.
-glm::vec3 PathIntegrator::surroundings(const Step& step, float roughness) const {
-    const glm::vec3 remainder = remainder_.radiance(step.direction);
-    return step.glossy ? remainder + wide_lights_in(environment_, step.direction, roughness) : remainder;
-}
-
 SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers) const {
     const LightFromLights first = light(vertex, numbers);
     SurfaceRadiance seen{first.scattered, glm::vec3(0.f), first.reflected};
@@ -167,15 +161,18 @@ SurfaceRadiance PathIntegrator::radiance(PathVertex vertex, PathNumbers& numbers
         }
         RayHit hit;
         if (!queries_.first_hit(origin, step.direction, 0, hidden_from, hit)) {
-            const glm::vec3 arriving = surroundings(step, vertex.roughness);
+            if (ground_distance < INFINITY && step.direction.y >= 0) // its underside
+                break;
+            const glm::vec3 shown = remainder_.radiance(step.direction),
+                            lights = step.glossy ? wide_lights_in(environment_, step.direction, vertex.roughness)
+                                                 : glm::vec3(0.f);
             if (!(ground_distance < INFINITY) || met_backdrop_ground) {
-                bounced += throughput * arriving;
+                bounced += throughput * shown;
+                bounced += throughput * lights;
                 break;
             }
-            if (step.direction.y >= 0) // its underside
-                break;
             const glm::vec3 point = backdrop_ground_->look().point(origin, step.direction, ground_distance);
-            const BackdropGround::Share share = backdrop_ground_->share(point, arriving);
+            const BackdropGround::Share share = backdrop_ground_->share(point, shown, lights);
             bounced += throughput * share.unchanged;
             vertex = ground_vertex(point, share.albedo);
             met_backdrop_ground = true;

@@ -26,8 +26,8 @@ struct PathVertex {
 /// Path tracing after Kajiya 1986 with light sampling. What a light sends through a lobe is found by sampling the light
 /// where the lobe is the wider of both, else by sampling the lobe, so that neither makes noise.
 ///
-/// The first backdrop's ground on a path is lit as the scene lets it, the next one is as the image shows it: an image
-/// that is brighter below the horizon than above would have light grow from bounce to bounce. Thread-safe.
+/// The first backdrop's ground on a path is lit as the scene lets it, the next one is as the image shows it, as it is
+/// for solved light. Thread-safe.
 class PathIntegrator {
   public:
     /// All must outlive it. `backdrop_ground`: null where the backdrop plays no ground.
@@ -54,7 +54,6 @@ class PathIntegrator {
     Step scatter(const PathVertex& vertex, PathNumbers& numbers) const;
     Step scatter_diffuse(const PathVertex& vertex, float choice, glm::vec2 place) const;
     glm::vec3 start(const PathVertex& vertex, const glm::vec3& direction) const;
-    glm::vec3 surroundings(const Step& step, float roughness) const;
 
     const RayQueries& queries_;
     const PatchScene& patches_;

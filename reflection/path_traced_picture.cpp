@@ -48,7 +48,8 @@ struct TruthOfPicture {
     }
 
     SurfaceRadiance changed_backdrop(const glm::vec3& point, const glm::vec3& direction, PathNumbers& numbers) const {
-        const BackdropGround::Share share = backdrop_ground->share(point, backdrop.seen(direction));
+        const BackdropGround::Share share =
+            backdrop_ground->share(point, backdrop.remainder(direction), backdrop.lights(direction));
         SurfaceRadiance light;
         if (share.albedo != glm::vec3(0.f)) {
             PathVertex vertex = PathIntegrator::ground_vertex(point, share.albedo);
@@ -71,7 +72,7 @@ Picture render_path_traced(const ShadedScene& scene, const RayQueries& queries, 
     const Backdrop backdrop(environment);
     const GroundLook ground(scene, queries, environment, backdrop, camera, options);
     std::optional<BackdropGround> backdrop_ground;
-    if (ground.height() && !ground.mean_albedo())
+    if (ground.is_backdrop())
         backdrop_ground.emplace(environment, backdrop, ground);
     const BackdropGround* changed = backdrop_ground ? &*backdrop_ground : nullptr;
     const PathIntegrator paths(scene, queries, environment, changed);

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace kokage {
 namespace {
@@ -54,6 +55,10 @@ SceneDescription lamp_lit(SceneDescription scene) {
     return scene;
 }
 
+std::filesystem::path unworn_texture(const std::filesystem::path& folder) {
+    return folder / "unworn.png";
+}
+
 /// A material that nothing wears, of the size of those that are downloaded. What an image shows is no matter to its
 /// loading, but that it can't be compressed to nothing is.
 SceneDescription with_unworn_textures(SceneDescription scene, const std::filesystem::path& folder) {
@@ -65,7 +70,7 @@ SceneDescription with_unworn_textures(SceneDescription scene, const std::filesys
         value = random.uniform();
     MaterialDescription& unworn = scene.materials["unworn"];
     unworn.pointer = "/materials/unworn";
-    unworn.base_color_texture = unworn.roughness_texture = folder / "unworn.png";
+    unworn.base_color_texture = unworn.roughness_texture = unworn_texture(folder);
     save_image(unworn.base_color_texture, noise);
     return scene;
 }
@@ -100,7 +105,8 @@ std::string said_about(const SkipCase& skip, const WorkReport& report) {
     return "nothing was left out";
 }
 
-PictureRecord draw(const SkipCase& skip, bool on, Progress& progress, Image& radiance) {
+/// `loaded`: the scene; null: it is put together in each run, which is timed as well.
+PictureRecord draw(const SkipCase& skip, const AssembledScene* loaded, bool on, Progress& progress, Image& radiance) {
     AssemblyOptions assembly;
     RenderOptions options;
     options.picture = skip.scene.picture;
@@ -119,10 +125,12 @@ PictureRecord draw(const SkipCase& skip, bool on, Progress& progress, Image& rad
     record.error = options.error;
     for (int run = 0; run < kRuns; ++run) {
         const Stopwatch whole;
-        const AssembledScene scene = assemble_scene(skip.scene, progress, assembly);
-        const double loading = skip.of_loading ? 0 : whole.cpu();
+        std::optional<AssembledScene> own;
+        if (!loaded)
+            own = assemble_scene(skip.scene, progress, assembly);
+        const AssembledScene& scene = loaded ? *loaded : *own;
         const RenderedScene rendered = render_scene(scene, options, progress);
-        const double seconds = whole.cpu() - loading;
+        const double seconds = whole.cpu();
         record.cpu_seconds = run == 0 ? seconds : std::min(record.cpu_seconds, seconds);
         radiance = rendered.picture.radiance;
         if (on)
@@ -140,14 +148,27 @@ double change(const Image& on, const Image& off) {
     return mean > 0 ? sum / mean : 0;
 }
 
+struct RemovedAtEnd {
+    std::filesystem::path file;
+    ~RemovedAtEnd() {
+        std::error_code ignored;
+        std::filesystem::remove(file, ignored);
+    }
+};
+
 } // namespace
 
 void measure_skips(const RenderPlan& plan, const std::filesystem::path& data, const std::filesystem::path& folder,
                    Progress& progress, const std::function<void(const PictureRecord&)>& take) {
+    const RemovedAtEnd texture{unworn_texture(folder)};
     for (const SkipCase& skip : cases(plan.width / 2, plan.height / 2, data, folder)) {
+        std::optional<AssembledScene> loaded;
+        if (!skip.of_loading)
+            loaded = assemble_scene(skip.scene, progress);
+        const AssembledScene* scene = loaded ? &*loaded : nullptr;
         Image with, without;
-        PictureRecord on = draw(skip, true, progress, with);
-        const PictureRecord off = draw(skip, false, progress, without);
+        PictureRecord on = draw(skip, scene, true, progress, with);
+        const PictureRecord off = draw(skip, scene, false, progress, without);
         on.change_by_skip = change(with, without);
         take(on);
         take(off);

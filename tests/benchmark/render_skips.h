@@ -12,7 +12,8 @@
 namespace kokage {
 
 /// Draws each pair at a quarter of the plan's pixels and hands out its records, method "skip: WHAT", effort "on" and
-/// "off": CPU time (the least of three), and how far the two pictures are apart. `folder`: as render_scenes().
+/// "off": CPU time (the least of three; with loading, where that is what differs), and how far the two pictures are
+/// apart. `folder`: as render_scenes().
 void measure_skips(const RenderPlan& plan, const std::filesystem::path& data, const std::filesystem::path& folder,
                    Progress& progress, const std::function<void(const PictureRecord&)>& take);
 

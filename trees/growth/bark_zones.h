@@ -14,7 +14,7 @@ struct BarkZone {
 };
 
 /// The zone of a patch: twigs are thinner than 12 mm and than a sixth of the trunk; a birch's, an aspen's and a
-/// pine's trunk is old at its foot and young above, in seven ages; on other trees all wood beyond twigs looks
+/// pine's trunk is old at its foot and young above, in up to seven ages; on other trees all wood beyond twigs looks
 /// alike.
 BarkZone bark_zone(const BarkPlace& place, const GrowthParameters& parameters, float trunk_radius_m,
                    float tree_height_m, std::uint32_t patch);

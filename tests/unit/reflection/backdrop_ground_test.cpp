@@ -10,9 +10,10 @@
 namespace kokage::test {
 namespace {
 
-Environment two_halves(float upper, float lower) {
-    Environment environment = gradient_environment(glm::vec3(1.f), glm::vec3(1.f), glm::vec3(1.f));
+Environment two_halves(float upper, float lower, int rows = 512) {
+    Environment environment = constant_environment(glm::vec3(1.f));
     Image& image = environment.remainder;
+    image = Image(2 * rows, rows, 3);
     const auto middle = image.pixels.begin() + std::ptrdiff_t(image.pixels.size() / 2);
     std::fill(image.pixels.begin(), middle, upper);
     std::fill(middle, image.pixels.end(), lower);
@@ -30,6 +31,12 @@ Image drawn_by_paths(const Ball& ball, const Environment& environment, const Cam
         .radiance;
 }
 
+Image drawn_fast(const Ball& ball, const Environment& environment, const Camera& camera) {
+    return render_picture(ball.scene, RayQueries(ball.patches), environment, camera, small_picture(16, 16, 64),
+                          silent_progress())
+        .radiance;
+}
+
 TEST(BackdropGround, IsAsDarkByTheRendererAsByPaths) {
     const Ball black({glm::vec3(0.f), glm::vec3(0.f)});
     for (const bool sunny : {false, true}) {
@@ -37,9 +44,7 @@ TEST(BackdropGround, IsAsDarkByTheRendererAsByPaths) {
         if (sunny)
             environment.distant_lights.push_back(disc_light({0.2f, 0.7f, -1}, 0.1f, glm::vec3(2.f)));
         const double truth = mean_of(drawn_by_paths(black, environment, camera_at_foot(), 600)).x;
-        const Picture fast = render_picture(black.scene, RayQueries(black.patches), environment, camera_at_foot(),
-                                            small_picture(16, 16, 64), silent_progress());
-        EXPECT_NEAR(mean_of(fast.radiance).x / truth, 1, 0.015) << sunny;
+        EXPECT_NEAR(mean_of(drawn_fast(black, environment, camera_at_foot())).x / truth, 1, 0.015) << sunny;
         EXPECT_LT(truth, 0.85 * 0.3 * (sunny ? 1.5 : 1)) << "it is in the shade";
     }
 }
@@ -51,41 +56,55 @@ TEST(BackdropGround, OfAWhiteFurnaceStaysWhite) {
     EXPECT_NEAR(mean_of(drawn_by_paths(white, furnace, camera_at({0, 0, 4}, {0, 0, 0}, 0.2f), 200)).x, 1, 0.01);
 }
 
-/// The next ground on a path would be brighter by 500 again, and so on.
-TEST(BackdropGround, ThatIsBrighterThanItsSkyDoesNotLightItself) {
+/// What is brighter than all light from above could make it shines by itself, and does not grow by what it lights.
+TEST(BackdropGround, ThatIsBrighterThanItsSkyDoesNotGrow) {
     const Ball white({glm::vec3(0.98f), glm::vec3(0.f)});
     const Image picture = drawn_by_paths(white, two_halves(1, 500), camera_at_foot(), 100);
-    for (const float value : picture.pixels) {
+    for (const float value : picture.pixels)
         EXPECT_TRUE(std::isfinite(value));
-        EXPECT_LT(value, 500 * 500.f) << "at most the ground's own light, thrown back by the ball onto it";
-    }
+    // At most what a white ground would throw back of a white ball's light is added.
+    EXPECT_LT(mean_of(picture).x, 2 * 500);
     const Ball black({glm::vec3(0.f), glm::vec3(0.f)});
-    EXPECT_LT(mean_of(drawn_by_paths(black, two_halves(1, 500), camera_at_foot(), 100)).x, 500);
-    EXPECT_NEAR(mean_of(drawn_by_paths(white, two_halves(1, 0), camera_at_foot(), 4)).x, 0, 1e-6)
-        << "black stays black";
+    const double shaded = mean_of(drawn_by_paths(black, two_halves(1, 500), camera_at_foot(), 100)).x;
+    EXPECT_LT(shaded, 500);
+    EXPECT_GT(shaded, 0.98 * 500) << "a pixel or two show the ball";
+    EXPECT_NEAR(mean_of(drawn_by_paths(white, two_halves(1, 0), camera_at_foot(), 4)).x, 0, 1e-6) << "black stays";
 }
 
 /// Nothing says how such a ground was lit, so it stays.
 TEST(BackdropGround, UnderABlackSkyIsAsTheImageShowsIt) {
-    const Environment environment = two_halves(0, 0.3f);
     const Ball black({glm::vec3(0.f), glm::vec3(0.f)});
-    EXPECT_NEAR(mean_of(drawn_by_paths(black, environment, camera_at({0, 3, 5}, {0, -1, 4}, 0.1f), 4)).x, 0.3, 0.01);
+    const Camera camera = camera_at({0, 3, 5}, {0, -1, 4}, 0.1f);
+    for (const int rows : {8, 512}) { // enlarged smoothly, the sky of few rows is not quite black
+        const Environment environment = two_halves(0, 0.3f, rows);
+        EXPECT_NEAR(mean_of(drawn_by_paths(black, environment, camera, 4)).x, 0.3, 0.02) << rows;
+        EXPECT_NEAR(mean_of(drawn_fast(black, environment, camera)).x, 0.3, 0.02) << rows;
+    }
 }
 
-/// Photographs of rooms have lamps in their lower half; the plane of the ground does not hide them from gloss.
-TEST(BackdropGround, LetsLampsBelowTheHorizonBeMirrored) {
-    Environment environment = constant_environment(glm::vec3(0.f));
-    environment.distant_lights.push_back(disc_light({0, -0.5f, 1}, 0.4f, glm::vec3(2.f)));
+/// Photographs of rooms have lamps in their lower half; neither does the plane of the ground hide them from gloss, nor
+/// does light that falls on the ground change them.
+TEST(BackdropGround, LetsLampsBelowTheHorizonBeSeenAndMirrored) {
+    const DistantLight lamp = disc_light({0, -0.5f, 1}, 0.4f, glm::vec3(2.f));
     Gloss varnish;
     varnish.normal_reflectance = glm::vec3(0.5f);
     varnish.roughness = 0.15f;
     const Ball ball({glm::vec3(0.f), glm::vec3(0.f)}, varnish);
-    const Camera camera = camera_at({0, 0, 6}, {0, -0.2f, 0}, 0.1f);
-    const double truth = mean_of(drawn_by_paths(ball, environment, camera, 400)).x;
-    const Picture fast = render_picture(ball.scene, RayQueries(ball.patches), environment, camera,
-                                        small_picture(16, 16, 64), silent_progress());
-    EXPECT_GT(truth, 0.1);
-    EXPECT_NEAR(mean_of(fast.radiance).x / truth, 1, 0.02);
+    for (const bool sunny : {false, true}) {
+        Environment environment = two_halves(0.02f, 0.01f);
+        environment.distant_lights.push_back(lamp);
+        if (sunny)
+            environment.distant_lights.push_back(disc_light({0, 1, -0.5f}, 0.05f, glm::vec3(3.f)));
+        const Camera camera = camera_at({0, 0, 6}, {0, -0.2f, 0}, 0.1f);
+        const double truth = mean_of(drawn_by_paths(ball, environment, camera, 400)).x;
+        EXPECT_GT(truth, 0.1);
+        EXPECT_NEAR(mean_of(drawn_fast(ball, environment, camera)).x / truth, 1, 0.02) << sunny;
+        // From behind the ball, straight at the lamp: its own radiance, and a little of the lit ground.
+        const Camera at_lamp = camera_at({0, 0, 1.5f}, {0, -0.5f, 2.5f}, 0.1f);
+        const double radiance = 2 / (kPiDouble * std::pow(std::sin(0.4), 2));
+        EXPECT_NEAR(mean_of(drawn_by_paths(ball, environment, at_lamp, 16)).x, radiance, 0.05 + 1.5 * sunny);
+        EXPECT_NEAR(mean_of(drawn_fast(ball, environment, at_lamp)).x, radiance, 0.05 + 1.5 * sunny);
+    }
 }
 
 } // namespace

@@ -60,6 +60,14 @@ TEST(BarkZones, CutWholePatchesAndLoseNothing) {
     }
 }
 
+TEST(BarkZones, APinesTrunkHasAllSevenAges) {
+    const Tree tree = grow(find_species("pine").parameters);
+    std::size_t zones = 0;
+    for (const TreePart& part : tree.parts)
+        zones += part.kind == TreePartKind::bark;
+    EXPECT_EQ(zones, 7u + 1u) << "with the twigs";
+}
+
 TEST(BarkZones, ABirchIsWhiteAboveAndDarkAtItsFoot) {
     const Tree tree = grown_with_zones("birch");
     const PatchScene scene = make_patches(tree);
