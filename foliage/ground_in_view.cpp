@@ -12,7 +12,7 @@ namespace {
 
 using namespace bundles;
 
-constexpr std::size_t kPatchBlock = 4096;
+constexpr std::size_t kBlockInView = 4096;
 
 struct Seen {
     std::uint16_t cell;
@@ -89,9 +89,9 @@ GroundInView::GroundInView(const PatchScene& scene, const GroundCells& ground, c
                            const BundleTransport& transport, std::span<const float> down) {
     const GroundSearch search(scene, ground, facets, transport);
     const std::vector<std::uint32_t>& with_rays = transport.rays.patches;
-    std::vector<Rows> blocks((facets.patch_count + kPatchBlock - 1) / kPatchBlock);
-    parallel_blocks(facets.patch_count, kPatchBlock, [&](std::size_t from, std::size_t to) {
-        Rows& rows = blocks[from / kPatchBlock];
+    std::vector<Rows> blocks((facets.patch_count + kBlockInView - 1) / kBlockInView);
+    parallel_blocks(facets.patch_count, kBlockInView, [&](std::size_t from, std::size_t to) {
+        Rows& rows = blocks[from / kBlockInView];
         std::vector<Seen> sides[2];
         for (std::size_t p = from; p < to; ++p) {
             const auto patch = std::uint32_t(p);

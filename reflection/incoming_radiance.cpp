@@ -9,7 +9,7 @@
 namespace kokage {
 namespace {
 
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kUnbounded = std::numeric_limits<float>::infinity();
 /// Make numbers of their own of a pixel's, for each mirror in a row others.
 constexpr std::uint32_t kMirrorPattern = 0x85ebca6bu, kChoicePattern = 0xc2b2ae35u;
 
@@ -43,8 +43,8 @@ IncomingRadiance::Met IncomingRadiance::first_met(const glm::vec3& origin, const
 
 bool IncomingRadiance::sees_sky(const glm::vec3& origin, const glm::vec3& direction, ShadingScratch& scratch) const {
     ++scratch.sky_rays;
-    return !(ground_.distance(origin, direction) < kInfinity) &&
-           !queries_.occluded(origin, direction, queries_.ray_offset(), kInfinity);
+    return !(ground_.distance(origin, direction) < kUnbounded) &&
+           !queries_.occluded(origin, direction, queries_.ray_offset(), kUnbounded);
 }
 
 std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const glm::vec3& direction,
@@ -52,7 +52,7 @@ std::optional<glm::vec3> IncomingRadiance::along(const glm::vec3& origin, const 
     const Met met = first_met(origin, direction, scratch);
     if (met.surface)
         return surfaces_.met_radiance(*met.surface, direction, {}, sample, scratch);
-    if (met.ground_distance < kInfinity)
+    if (met.ground_distance < kUnbounded)
         return ground_light_.met_radiance(origin, direction, met.ground_distance, glm::vec3(0.f), sample, scratch);
     return std::nullopt;
 }
@@ -68,7 +68,7 @@ std::optional<glm::vec3> IncomingRadiance::through_lobe(const glm::vec3& origin,
     for (int mirrors = 0;; ++mirrors, sample.pattern += kMirrorPattern) {
         const Met met = first_met(from, along, scratch);
         if (!met.surface) {
-            if (met.ground_distance < kInfinity) {
+            if (met.ground_distance < kUnbounded) {
                 const glm::vec3 lights = has_ground() ? glm::vec3(0.f) : wide_lights_in(environment_, along, roughness);
                 return seen +
                        share * ground_light_.met_radiance(from, along, met.ground_distance, lights, sample, scratch);

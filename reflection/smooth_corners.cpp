@@ -11,14 +11,14 @@ namespace {
 constexpr float kLeastCosine = 0.98f; ///< of the normals of one corner: some 11 degrees
 constexpr std::uint32_t kNone = 0xffffffffu;
 
-struct Place {
+struct CornerPlace {
     glm::vec3 position{0.f};
     std::uint32_t look = 0;
-    bool operator==(const Place&) const = default;
+    bool operator==(const CornerPlace&) const = default;
 };
 
-struct PlaceHash {
-    std::size_t operator()(const Place& place) const {
+struct CornerPlaceHash {
+    std::size_t operator()(const CornerPlace& place) const {
         const glm::vec3 position = place.position + 0.f; // -0 is 0
         std::array<std::uint32_t, 3> bits;
         std::memcpy(bits.data(), &position, sizeof(bits));
@@ -47,7 +47,7 @@ class Joining {
     std::uint32_t found(std::uint32_t position, std::uint32_t look) {
         const glm::vec3 normal = scene_.normals.empty() ? glm::vec3(0.f) : scene_.normals[position];
         std::uint32_t* link =
-            &first_.try_emplace(Place{scene_.patches->positions[position], look}, kNone).first->second;
+            &first_.try_emplace(CornerPlace{scene_.patches->positions[position], look}, kNone).first->second;
         while (*link != kNone) {
             Corner& corner = corners_[*link];
             if (corner.normal == normal || glm::dot(corner.normal, normal) > kLeastCosine)
@@ -62,7 +62,7 @@ class Joining {
     const ShadedScene& scene_;
     std::vector<std::uint32_t> of_position_;
     std::vector<Corner> corners_;
-    std::unordered_map<Place, std::uint32_t, PlaceHash> first_; ///< corner at a place
+    std::unordered_map<CornerPlace, std::uint32_t, CornerPlaceHash> first_; ///< corner at a place
 };
 
 } // namespace

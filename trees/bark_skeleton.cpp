@@ -12,7 +12,7 @@
 namespace kokage {
 namespace {
 
-constexpr std::uint32_t kNone = ~0u;
+constexpr std::uint32_t kNoNode = ~0u;
 
 /// Turns a piece's axis tree into branches, the thickest way through it first.
 class BranchWriter {
@@ -40,7 +40,7 @@ class BranchWriter {
             for (std::uint32_t node = start.node;;) {
                 branch.nodes.push_back({nodes[node].position, nodes[node].radius_m});
                 const std::uint32_t next = main_child(nodes, node);
-                if (next == kNone)
+                if (next == kNoNode)
                     break;
                 for (const std::uint32_t child : nodes[node].children)
                     if (child != next && is_limb(nodes, child))
@@ -58,12 +58,12 @@ class BranchWriter {
         for (const std::uint32_t child : nodes[node].children)
             if (is_limb(nodes, child) || nodes[node].children.size() == 1)
                 thickest = std::max(thickest, limb_radius(nodes, child));
-        std::uint32_t best = kNone;
+        std::uint32_t best = kNoNode;
         for (const std::uint32_t child : nodes[node].children) {
             if (nodes[node].children.size() > 1 && !is_limb(nodes, child))
                 continue;
             if (limb_radius(nodes, child) >= 0.75f * thickest &&
-                (best == kNone || nodes[child].reach > nodes[best].reach))
+                (best == kNoNode || nodes[child].reach > nodes[best].reach))
                 best = child;
         }
         return best;
@@ -96,7 +96,7 @@ std::array<BarkEnd, 2> ends_of(const TubeAxis& tube) {
 
 /// Where a piece meets wood that is already there.
 struct Contact {
-    std::uint32_t vertex = kNone; ///< of a tube: 0 its base, 1 its tip
+    std::uint32_t vertex = kNoNode; ///< of a tube: 0 its base, 1 its tip
     WoodHold hold;
 };
 

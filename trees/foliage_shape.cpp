@@ -18,7 +18,7 @@ struct Box {
     double diagonal() const { return low.x <= high.x ? glm::length(high - low) : 0; }
 };
 
-struct Piece {
+struct FoliagePiece {
     Box box;
     double area = 0;
     Eigen::Matrix3d facing = Eigen::Matrix3d::Zero(); ///< sum of area n n^T
@@ -51,7 +51,7 @@ LoosePieces small_flat_pieces(const SceneMesh& mesh, double longest) {
     found.triangles.assign(mesh.triangles.size(), false);
     const std::vector<std::uint32_t> piece_of =
         connected_components(triangle_neighbours(mesh.triangles, weld(mesh.positions)));
-    std::vector<Piece> pieces(piece_of.empty() ? 0 : *std::max_element(piece_of.begin(), piece_of.end()) + 1);
+    std::vector<FoliagePiece> pieces(piece_of.empty() ? 0 : *std::max_element(piece_of.begin(), piece_of.end()) + 1);
     for (std::size_t t = 0; t < piece_of.size(); ++t) {
         const glm::uvec3& corners = mesh.triangles[t];
         pieces[piece_of[t]].add(mesh.positions[corners.x], mesh.positions[corners.y], mesh.positions[corners.z]);

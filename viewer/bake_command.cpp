@@ -9,6 +9,7 @@
 #include "viewer/bake_options.h"
 #include "viewer/bake_report.h"
 #include "viewer/command.h"
+#include "viewer/print_file.h"
 #include "viewer/scene/values.h"
 #include "viewer/stop_signal.h"
 #include "viewer/write_json.h"
@@ -74,12 +75,6 @@ void print_map(const BakeOptions& options) {
                 counted(options.plan.texels, "filtered texel", "filtered texels").c_str(),
                 bytes_text(double(options.plan.bytes)).c_str(), options.method.c_str());
     print_lobes(options);
-}
-
-void print_file(const std::filesystem::path& file) {
-    if (!file.empty())
-        std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
-                    bytes_text(double(std::filesystem::file_size(file))).c_str());
 }
 
 BakeRecord begin_record(const BakeOptions& options) {

@@ -8,7 +8,7 @@ namespace kokage {
 namespace {
 using Json = nlohmann::ordered_json;
 
-Json environment_json(const Environment& environment, const EnvironmentReport& report) {
+Json surroundings_json(const Environment& environment, const EnvironmentReport& report) {
     Json lights = Json::array();
     for (const DistantLight& light : environment.distant_lights)
         lights.push_back(light.name);
@@ -116,7 +116,7 @@ Json bake_report(const BakeRecord& record) {
     const BakeOptions& o = *record.options;
     Json json = {{"inputs", {{"environment", o.surroundings.environment}}}, {"settings", bake_identity(o)}};
     if (record.environment)
-        json["inputs"]["surroundings"] = environment_json(*record.environment, record.environment_report);
+        json["inputs"]["surroundings"] = surroundings_json(*record.environment, record.environment_report);
     json["map"] = map_json(o);
     if (record.sequence)
         json["sequence"] = sequence_json(*record.sequence);

@@ -5,6 +5,7 @@
 #include "common/services/error.h"
 #include "common/services/named_file.h"
 #include "viewer/command.h"
+#include "viewer/print_file.h"
 #include "viewer/render_options.h"
 #include "viewer/render_report.h"
 #include "viewer/scene/scene_texts.h"
@@ -65,11 +66,6 @@ void describe_subject(const Picture& picture, RenderRecord& record) {
     }
     record.subject_share = share / double(picture.subject.pixels.size());
     record.subject_radiance = share > 0 ? luminance / share : 0;
-}
-
-void print_file(const std::filesystem::path& file) {
-    std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
-                bytes_text(double(std::filesystem::file_size(file))).c_str());
 }
 
 void print_summary(const RenderCommandOptions& options, const RenderRecord& record) {

@@ -5,6 +5,7 @@
 #include "common/services/named_file.h"
 #include "trees/write_tree.h"
 #include "viewer/command.h"
+#include "viewer/print_file.h"
 #include "viewer/scene/output_check.h"
 #include "viewer/scene/shaded_scene.h"
 #include "viewer/scene/stage_clock.h"
@@ -107,11 +108,6 @@ std::string asked_text(const ShadingOptions& options) {
     if (options.effort == 0)
         std::snprintf(text, sizeof text, " (asked for %.3g %%)", 100 * options.error);
     return text;
-}
-
-void print_file(const std::filesystem::path& file) {
-    std::printf("%s (%s)\n", std::filesystem::absolute(file).lexically_normal().c_str(),
-                bytes_text(double(std::filesystem::file_size(file))).c_str());
 }
 
 /// The errors of the levels of detail, as in their report, and where they are.

@@ -14,9 +14,9 @@ namespace kokage {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::uint64_t kMaximumFile = std::uint64_t(1) << 26;
-constexpr std::uint64_t kMaximumPixels = std::uint64_t(1) << 27;
-constexpr std::uint64_t kMaximumPixelsOfOne = std::uint64_t(1) << 26;
+constexpr std::uint64_t kMaximumMaterialFile = std::uint64_t(1) << 26;
+constexpr std::uint64_t kMaximumTexturePixels = std::uint64_t(1) << 27;
+constexpr std::uint64_t kMaximumTexturePixelsOfOne = std::uint64_t(1) << 26;
 constexpr std::size_t kMaximumMaterials = std::size_t(1) << 16;
 
 std::string trimmed(const std::string& text) {
@@ -164,7 +164,7 @@ class MaterialTextures {
         }
         ImageLoading loading;
         loading.meaning = meaning;
-        loading.max_pixels = std::min(kMaximumPixelsOfOne, kMaximumPixels - owner_.pixels_);
+        loading.max_pixels = std::min(kMaximumTexturePixelsOfOne, kMaximumTexturePixels - owner_.pixels_);
         const std::string shown = owner_.path_.string() + ": " + place + ": " + file.string();
         // TGA has no magic number: by its name then.
         Image image =
@@ -217,7 +217,7 @@ void ObjMaterials::read_library(const std::string& names) {
 }
 
 void ObjMaterials::read_file(const fs::path& file) {
-    const std::vector<unsigned char> bytes = read_file_bytes(file, kMaximumFile);
+    const std::vector<unsigned char> bytes = read_file_bytes(file, kMaximumMaterialFile);
     const std::string text(bytes.begin(), bytes.end());
     std::istringstream stream(text);
     std::map<std::string, int> indices;

@@ -20,7 +20,7 @@
 namespace kokage {
 namespace {
 
-constexpr std::uint64_t kMaximumFile = 0xffffffffu;
+constexpr std::uint64_t kMaximumObjFile = 0xffffffffu;
 constexpr std::size_t kMaximumLine = std::size_t(1) << 16;
 constexpr int kMaximumCorners = 1024;
 constexpr double kLargestCoordinate = 1e30;
@@ -61,7 +61,7 @@ class ObjReader {
         : path_(path), progress_(progress), materials_(path, scene_.notes) {}
 
     MeshScene read() {
-        std::vector<unsigned char> bytes = read_file_bytes(path_, kMaximumFile);
+        std::vector<unsigned char> bytes = read_file_bytes(path_, kMaximumObjFile);
         read_lines(bytes);
         if (!colors_.empty())
             materials_.take_colors_of_vertices();

@@ -12,7 +12,7 @@
 namespace kokage {
 namespace {
 
-constexpr const char* kUnwritable = "the system did not take it (is the disk full?)";
+constexpr const char* kLayersUnwritable = "the system did not take it (is the disk full?)";
 constexpr int kRows = 64; ///< written at a time; a multiple of the rows that are compressed together
 constexpr std::uint64_t kMostPixels = std::uint64_t(1) << 28;
 
@@ -91,10 +91,10 @@ void save_layers(const std::filesystem::path& path, const std::vector<ImageLayer
     OutputFile file(path);
     const auto output = OIIO::ImageOutput::create("exr");
     if (!output)
-        fail_to_write(path, one_line(OIIO::geterror(), kUnwritable));
+        fail_to_write(path, one_line(OIIO::geterror(), kLayersUnwritable));
     if (!output->open(file.temporary_path().string(), spec) || !write_rows(*output, layers, spec.nchannels) ||
         !output->close())
-        fail_to_write(path, one_line(output->geterror(), kUnwritable));
+        fail_to_write(path, one_line(output->geterror(), kLayersUnwritable));
     file.commit();
 }
 

@@ -4,40 +4,16 @@
 #include "common/trace/path_tracer.h"
 #include "common/environment/light_radiance.h"
 #include "common/services/error.h"
+#include "common/services/sharded_counter.h"
 #include "common/trace/light_sampler.h"
 #include "common/trace/remainder_sampler.h"
 
 #include <algorithm>
-#include <array>
-#include <atomic>
 #include <cmath>
 #include <string>
 
 namespace kokage {
 namespace {
-
-/// Counts without a cache line that all threads fight for.
-class ShardedCounter {
-  public:
-    void add(std::uint64_t amount) {
-        static std::atomic<unsigned> threads{0};
-        thread_local const unsigned shard = threads++ % kShards;
-        shards_[shard].value.fetch_add(amount, std::memory_order_relaxed);
-    }
-    std::uint64_t total() const {
-        std::uint64_t sum = 0;
-        for (const Shard& shard : shards_)
-            sum += shard.value.load(std::memory_order_relaxed);
-        return sum;
-    }
-
-  private:
-    static constexpr unsigned kShards = 64;
-    struct alignas(64) Shard {
-        std::atomic<std::uint64_t> value{0};
-    };
-    std::array<Shard, kShards> shards_;
-};
 
 /// Cosine-distributed direction around a unit normal: a point of the unit sphere added to it (Lambert's law seen as a
 /// sphere that touches the surface). Exactly downward points are replaced by the normal.

@@ -7,7 +7,7 @@
 namespace kokage::bundles {
 namespace {
 
-constexpr std::size_t kPatchBlock = 1024;
+constexpr std::size_t kRayBlock = 1024;
 
 } // namespace
 
@@ -24,7 +24,7 @@ void gather_ray_ends(const BundleTransport& transport, const Image& remainder, c
         radiance.resize(radiance.size() + transport.ground->texels() + 1, ground_radiance);
         down.resize(radiance.size(), 1);
     }
-    parallel_blocks(rays.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(rays.patches.size(), kRayBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t row = 4 * from; row < 4 * to; ++row) {
             const Side side = 2 * rays.patches[row / 4] + Side(row / 2 % 2);
             glm::vec3 light(0.f);
@@ -49,7 +49,7 @@ void gather_ray_ends(const BundleTransport& transport, const Image& remainder, c
 }
 
 void gather_ray_ground(const RayLinks& rays, std::span<const glm::vec3> ground_excess, std::span<Rgb> from_ground) {
-    parallel_blocks(rays.patches.size(), kPatchBlock, [&](std::size_t from, std::size_t to) {
+    parallel_blocks(rays.patches.size(), kRayBlock, [&](std::size_t from, std::size_t to) {
         for (std::size_t row = 4 * from; row < 4 * to; row += 2) { // both halves of a side together
             glm::vec3 sum(0.f);
             int count = 0;

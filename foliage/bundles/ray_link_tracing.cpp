@@ -12,7 +12,7 @@ namespace kokage::bundles {
 namespace {
 
 constexpr std::size_t kPatchesAtOnce = 8192; ///< bounds the memory of rays under way
-constexpr std::size_t kPatchBlock = 16;
+constexpr std::size_t kTracedBlock = 16;
 constexpr int kSkyCells = 2 * 32 * 32;      ///< 6 degrees a cell: the sky without its lights is smooth
 constexpr std::uint32_t kEnd = 0x80000000u; ///< marks a ray that met no patch; the other bits hold its entry of `ends`
 
@@ -224,7 +224,7 @@ void add_ray_links(const RayQueries& queries, const PatchPoints& points, const F
         seen.resize(4 * count * room);
         solid.resize(count);
         const auto rows_of = [&](std::size_t i) { return SeenRows{seen.data() + 4 * i * room, room}; };
-        parallel_blocks(count, kPatchBlock, [&](std::size_t from, std::size_t to) {
+        parallel_blocks(count, kTracedBlock, [&](std::size_t from, std::size_t to) {
             progress.throw_if_stopped();
             for (std::size_t i = from; i < to; ++i) {
                 const std::uint32_t patch = patches[first + i];

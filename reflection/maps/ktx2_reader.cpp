@@ -11,7 +11,7 @@ namespace kokage {
 namespace {
 
 using Bytes = std::span<const unsigned char>;
-constexpr std::uint64_t kMostBytes = std::uint64_t(1) << 34;
+constexpr std::uint64_t kMostKtx2Bytes = std::uint64_t(1) << 34;
 constexpr std::uint64_t kLargestSize = 16384;
 
 /// Reads one file; every number is checked before it leads anywhere.
@@ -211,7 +211,7 @@ class Ktx2Reader {
 } // namespace
 
 CubeFile read_ktx2(const std::filesystem::path& path) {
-    return read_ktx2(read_file_bytes(path, kMostBytes), path.string());
+    return read_ktx2(read_file_bytes(path, kMostKtx2Bytes), path.string());
 }
 
 CubeFile read_ktx2(std::span<const unsigned char> bytes, const std::string& name) {

@@ -31,18 +31,18 @@ glm::dvec3 face_point(int face, double s, double t) {
     }
 }
 
-struct FacePlace {
+struct CubePlace {
     int face;
     double s, t; ///< -1 ... 1
 };
 
-FacePlace face_of(const glm::dvec3& d) {
+CubePlace face_of(const glm::dvec3& d) {
     const glm::dvec3 a = glm::abs(d);
     if (a.x >= a.y && a.x >= a.z)
-        return d.x >= 0 ? FacePlace{0, -d.z / a.x, -d.y / a.x} : FacePlace{1, d.z / a.x, -d.y / a.x};
+        return d.x >= 0 ? CubePlace{0, -d.z / a.x, -d.y / a.x} : CubePlace{1, d.z / a.x, -d.y / a.x};
     if (a.y >= a.z)
-        return d.y >= 0 ? FacePlace{2, d.x / a.y, d.z / a.y} : FacePlace{3, d.x / a.y, -d.z / a.y};
-    return d.z >= 0 ? FacePlace{4, d.x / a.z, -d.y / a.z} : FacePlace{5, -d.x / a.z, -d.y / a.z};
+        return d.y >= 0 ? CubePlace{2, d.x / a.y, d.z / a.y} : CubePlace{3, d.x / a.y, -d.z / a.y};
+    return d.z >= 0 ? CubePlace{4, d.x / a.z, -d.y / a.z} : CubePlace{5, -d.x / a.z, -d.y / a.z};
 }
 
 int texel_of(double s, int size) {
@@ -208,7 +208,7 @@ void bake_cube(PrefilteredCube& cube, const Environment& surroundings, Baker* ba
 }
 
 std::size_t cube_texel_towards(const glm::dvec3& direction, int size) {
-    const FacePlace place = face_of(direction);
+    const CubePlace place = face_of(direction);
     return cube_texel_index(place.face, texel_of(place.s, size), texel_of(place.t, size), size);
 }
 
@@ -220,7 +220,7 @@ std::size_t cube_texel_index(int face, int x, int y, int size) {
         const glm::dvec3 middle = face_point(face, 0, 0);
         const glm::dvec3 point =
             (1 - beyond) * middle + face_point(face, std::clamp(s, -1., 1.), std::clamp(t, -1., 1.)) - middle;
-        const FacePlace place = face_of(point);
+        const CubePlace place = face_of(point);
         face = place.face;
         x = texel_of(place.s, size);
         y = texel_of(place.t, size);
@@ -229,7 +229,7 @@ std::size_t cube_texel_index(int face, int x, int y, int size) {
 }
 
 glm::vec3 cube_lookup(const PrefilteredCube::Level& level, const glm::dvec3& direction) {
-    const FacePlace place = face_of(direction);
+    const CubePlace place = face_of(direction);
     const double x = (place.s + 1) / 2 * level.size - 0.5, y = (place.t + 1) / 2 * level.size - 0.5;
     const int x0 = int(std::floor(x)), y0 = int(std::floor(y));
     const double fx = x - x0, fy = y - y0;

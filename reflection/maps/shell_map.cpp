@@ -36,7 +36,7 @@ void check(const ShellSettings& s) {
         throw InputError("shell map of " + number(s.texels_a_width) + " texels a lobe's width: ask for 0.25 to 16");
 }
 
-double power(double width) {
+double spacing_power_of(double width) {
     return std::pow(width, double(ShellMap::spacing_power));
 }
 
@@ -66,7 +66,8 @@ std::vector<ShellMap::Shell> ShellMap::plan(const ShellSettings& settings) {
     const double ends[2] = {lobe_width({settings.kind, settings.least_parameter}),
                             lobe_width({settings.kind, settings.most_parameter})};
     const double rough = std::max(ends[0], ends[1]), smooth = std::min(ends[0], ends[1]);
-    const double range = power(rough) - power(smooth), widest = power(smooth * settings.shell_ratio) - power(smooth);
+    const double range = spacing_power_of(rough) - spacing_power_of(smooth),
+                 widest = spacing_power_of(smooth * settings.shell_ratio) - spacing_power_of(smooth);
     const double wanted = std::ceil(range / widest - 1e-9);
     if (!(wanted < kMostShells))
         throw InputError("shell map with shells " + std::to_string(settings.shell_ratio) + " widths apart: more than " +
@@ -75,7 +76,7 @@ std::vector<ShellMap::Shell> ShellMap::plan(const ShellSettings& settings) {
     std::vector<Shell> shells;
     std::size_t stored = 0, baked = 0;
     for (int i = 0; i <= intervals; ++i) {
-        const double between = power(rough) - range * i / std::max(intervals, 1);
+        const double between = spacing_power_of(rough) - range * i / std::max(intervals, 1);
         const double width = i == 0 ? rough : i == intervals ? smooth : std::pow(between, 1 / double(spacing_power));
         Shell shell;
         shell.lobe = lobe_of_width(settings.kind, width);
@@ -93,9 +94,9 @@ std::vector<ShellMap::Shell> ShellMap::plan(const ShellSettings& settings) {
 }
 
 ShellMap::ShellMap(const ShellSettings& settings) : settings_(settings), shells_(plan(settings)) {
-    first_power_ = float(power(shells_.front().width));
+    first_power_ = float(spacing_power_of(shells_.front().width));
     if (shells_.size() > 1)
-        shells_a_power_ = float(shells_.size() - 1) / (first_power_ - float(power(shells_.back().width)));
+        shells_a_power_ = float(shells_.size() - 1) / (first_power_ - float(spacing_power_of(shells_.back().width)));
     layout_.kind = settings.kind;
     for (const Shell& shell : shells_) {
         add_directions(layout_.directions, shell.resolution, baked_border());

@@ -102,7 +102,7 @@ std::vector<float> integrate(const Slopes& slopes, const glm::dvec2& tile_m, dou
 }
 
 template <class... Parts>
-std::string text(const Parts&... parts) {
+std::string joined_text(const Parts&... parts) {
     std::ostringstream stream;
     (stream << ... << parts);
     return stream.str();
@@ -112,20 +112,20 @@ void repair(Slopes& slopes, const std::string& name, const NormalMapOptions& opt
     if (options.strict)
         for (std::size_t i = 0; i < slopes.u.size(); ++i)
             if (!std::isfinite(slopes.u[i]))
-                throw InputError(text("'", name, "' has no normal at texel (", i % std::size_t(slopes.width), ", ",
-                                      i / std::size_t(slopes.width),
-                                      "); mend the image, or do without strictness to have it repaired"));
+                throw InputError(joined_text("'", name, "' has no normal at texel (", i % std::size_t(slopes.width),
+                                             ", ", i / std::size_t(slopes.width),
+                                             "); mend the image, or do without strictness to have it repaired"));
     report.repaired = repair_texels(slopes.u, slopes.width, slopes.height, options.wrap);
     repair_texels(slopes.v, slopes.width, slopes.height, options.wrap);
     if (2 * report.repaired > slopes.u.size())
-        throw InputError(text("'", name, "' is no normal map in the tangent frame: ", report.repaired, " of its ",
-                              slopes.u.size(), " texels do not face outwards; give a bluish one"));
+        throw InputError(joined_text("'", name, "' is no normal map in the tangent frame: ", report.repaired,
+                                     " of its ", slopes.u.size(), " texels do not face outwards; give a bluish one"));
     if (report.repaired > 0)
-        report.notes.push_back(
-            text("'", name, "': ", report.repaired, " texels hold no normal; they were filled from those around them"));
+        report.notes.push_back(joined_text("'", name, "': ", report.repaired,
+                                           " texels hold no normal; they were filled from those around them"));
     if (report.steep > 0)
-        report.notes.push_back(
-            text("'", name, "': ", report.steep, " slopes are steeper than ", kSteepestSlope, "; they were reduced"));
+        report.notes.push_back(joined_text("'", name, "': ", report.steep, " slopes are steeper than ", kSteepestSlope,
+                                           "; they were reduced"));
 }
 
 } // namespace
@@ -135,7 +135,8 @@ Relief relief_from_normals(const Image& image, const std::string& name, const No
     ReliefScale scale{options.tile_m, 0};
     check_relief_scale(scale);
     if (image.width < 1 || image.height < 1 || image.channels < 3)
-        throw InputError(text("'", name, "' has ", image.channels, " channels, a normal map has 3; give a normal map"));
+        throw InputError(
+            joined_text("'", name, "' has ", image.channels, " channels, a normal map has 3; give a normal map"));
     report = {};
     Slopes slopes = slopes_of(image, options.green, report.steep);
     repair(slopes, name, options, report);
@@ -146,9 +147,9 @@ Relief relief_from_normals(const Image& image, const std::string& name, const No
                                            ? integrate(mirrored(slopes), 2. * glm::dvec2(options.tile_m), report.curl)
                                            : integrate(slopes, glm::dvec2(options.tile_m), report.curl);
     if (report.curl > kCurlShows)
-        report.notes.push_back(text("'", name, "': ", std::round(100 * report.curl),
-                                    " % of its slopes belong to no height field; perhaps its green points ",
-                                    options.green == NormalMapGreen::up ? "down (DirectX)" : "up (OpenGL)"));
+        report.notes.push_back(joined_text("'", name, "': ", std::round(100 * report.curl),
+                                           " % of its slopes belong to no height field; perhaps its green points ",
+                                           options.green == NormalMapGreen::up ? "down (DirectX)" : "up (OpenGL)"));
     Relief relief{{image.width, image.height, options.wrap, {}}, scale};
     const std::size_t row = std::size_t(is_mirrored ? 2 * image.width : image.width);
     for (int y = 0; y < image.height; ++y) {
@@ -161,8 +162,8 @@ Relief relief_from_normals(const Image& image, const std::string& name, const No
         depth = high > low ? std::clamp((high - depth) / (high - low), 0.f, 1.f) : 0.f;
     relief.scale.depth_m = high - low;
     if (!std::isfinite(relief.scale.depth_m))
-        throw InputError(text("'", name, "': a tile of ", options.tile_m.x, " x ", options.tile_m.y,
-                              " m gives heights that no number holds; give the tile's size in metres"));
+        throw InputError(joined_text("'", name, "': a tile of ", options.tile_m.x, " x ", options.tile_m.y,
+                                     " m gives heights that no number holds; give the tile's size in metres"));
     return relief;
 }
 

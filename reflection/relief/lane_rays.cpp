@@ -6,7 +6,7 @@
 namespace kokage {
 namespace {
 
-constexpr std::size_t kBlock = 1 << 16; ///< rays, whose numbers fit in 32 bits and whose results fit in a cache
+constexpr std::size_t kLaneBlock = 1 << 16; ///< rays, whose numbers fit in 32 bits and whose results fit in a cache
 
 /// The tracer of one ray, with its own rounding to floats.
 ReliefHit hit_cell_by_cell(const HeightField& field, const ReliefRay& ray) {
@@ -20,8 +20,8 @@ ReliefHit hit_cell_by_cell(const HeightField& field, const ReliefRay& ray) {
 void trace_in_lanes(const HeightField& field, std::span<const ReliefRay> rays, std::span<ReliefHit> hits,
                     const TraceBlock& trace) {
     std::vector<std::size_t> odd;
-    for (std::size_t first = 0; first < rays.size(); first += kBlock) {
-        const auto block = rays.subspan(first, std::min(kBlock, rays.size() - first));
+    for (std::size_t first = 0; first < rays.size(); first += kLaneBlock) {
+        const auto block = rays.subspan(first, std::min(kLaneBlock, rays.size() - first));
         odd.clear();
         trace(block, {hits.data() + first, nullptr, nullptr, &odd});
         for (const std::size_t ray : odd)
@@ -32,8 +32,8 @@ void trace_in_lanes(const HeightField& field, std::span<const ReliefRay> rays, s
 void occlude_in_lanes(const HeightField& field, std::span<const ReliefRay> rays, std::span<std::uint8_t> hidden,
                       std::span<std::uint32_t> reads, const TraceBlock& trace) {
     std::vector<std::size_t> odd;
-    for (std::size_t first = 0; first < rays.size(); first += kBlock) {
-        const auto block = rays.subspan(first, std::min(kBlock, rays.size() - first));
+    for (std::size_t first = 0; first < rays.size(); first += kLaneBlock) {
+        const auto block = rays.subspan(first, std::min(kLaneBlock, rays.size() - first));
         odd.clear();
         trace(block, {nullptr, hidden.data() + first, reads.empty() ? nullptr : reads.data() + first, &odd});
         for (const std::size_t ray : odd) {

@@ -6,13 +6,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <string>
 
 namespace kokage {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
 constexpr int kFewestAzimuths = 4, kMostAzimuths = 256;
 
 /// A texel and the four cells around it, as ReliefOpenness orders them.
@@ -52,7 +50,7 @@ float arc_tangent(float x) {
     const float angle =
         y * (0.99997726f +
              s * (-0.33262347f + s * (0.19354346f + s * (-0.11643287f + s * (0.05265332f - s * 0.01172120f)))));
-    return x > 1 ? float(kPi / 2) - angle : angle;
+    return x > 1 ? float(kPiDouble / 2) - angle : angle;
 }
 
 /// Light from one azimuth above a horizon: eq 3's integral over the elevation e from the horizon h up,
@@ -61,7 +59,7 @@ float arc_tangent(float x) {
 /// 1).
 float open_part(float tangent, float rise, float n_z) {
     const float cos_squared = 1 / (1 + tangent * tangent);
-    return n_z * (cos_squared - rise * (float(kPi / 2) - arc_tangent(tangent) - tangent * cos_squared));
+    return n_z * (cos_squared - rise * (float(kPiDouble / 2) - arc_tangent(tangent) - tangent * cos_squared));
 }
 
 /// Openness of every texel and in its cells, as sums over azimuths.
@@ -168,13 +166,13 @@ ReliefOpenness depth_map_openness(const HeightField& field, const DepthMaps& map
         float solid_angle;
     };
     std::vector<Direction> directions;
-    const double ring = kPi / 2 / settings.zeniths;
+    const double ring = kPiDouble / 2 / settings.zeniths;
     for (int map = 0; map < settings.maps(); ++map) {
         const int k = map / settings.azimuths;
         const glm::dvec2 slope = sampling_slope(settings, map);
         // The band around the direction; the last one reaches down to the horizon.
         const double above = std::max(0., (k - 0.5) * ring),
-                     below = k + 1 == settings.zeniths ? kPi / 2 : (k + 0.5) * ring;
+                     below = k + 1 == settings.zeniths ? kPiDouble / 2 : (k + 0.5) * ring;
         directions.push_back({glm::vec2(relief_slope(settings.scale, slope)),
                               glm::vec3(glm::normalize(glm::dvec3(-slope, 1))),
                               float((std::cos(above) - std::cos(below)) / settings.azimuths)});

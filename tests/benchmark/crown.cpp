@@ -18,7 +18,6 @@ constexpr double kWaist = 0.42, kHalfWidth = 0.27;
 // leaves of a twig cut through one another, which no leaf does and which no method with one radiance a leaf side can
 // shade well.
 constexpr double kPetiole = 2.5;
-constexpr double kGoldenCos = -0.73736887807831979, kGoldenSin = 0.67549029426152362;
 
 /// A leaf before its size is known.
 struct LeafPlace {

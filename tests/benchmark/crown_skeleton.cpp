@@ -11,8 +11,6 @@ namespace {
 
 constexpr std::uint32_t kLimbs = 16, kBranches = 128;
 constexpr double kTrunkRadius = 0.21, kTrunkTop = 9.6;
-// The golden angle's cosine and sine: successive limbs turn by it, as leaves and limbs of real trees do.
-constexpr double kGoldenCos = -0.73736887807831979, kGoldenSin = 0.67549029426152362;
 
 /// The three-dimensional R sequence (Kronecker sequence of the root of x^4 = x + 1) in 64-bit integers: evenly spread
 /// for every number of points, and exact.

@@ -3,6 +3,9 @@
 
 namespace kokage {
 
+/// The golden angle's cosine and sine: successive limbs and leaves turn by it, as those of real trees do.
+inline constexpr double kGoldenCos = -0.73736887807831979, kGoldenSin = 0.67549029426152362;
+
 /// Where the crown of the benchmark ends: a dome, in metres.
 struct CrownEnvelope {
     glm::dvec3 centre{0.0, 6.6, 0.0};

@@ -14,11 +14,11 @@ namespace kokage {
 
 namespace {
 
-struct Experiment {
+struct ReflectionExperiment {
     const char* name;
     void (*measure)(const ExperimentContext&);
 };
-constexpr Experiment kExperiments[] = {
+constexpr ReflectionExperiment kReflectionExperiments[] = {
     {"tables", measure_tables},         {"spectral", measure_spectral}, {"hdr", measure_hdr},
     {"containers", measure_containers}, {"teapot", measure_teapot},     {"video", measure_video},
     {"skips", measure_skips},           {"cmgen", measure_cmgen},
@@ -40,7 +40,7 @@ class ReflectionRun {
             run_.note("skipped: the photograph, the real HDR images and all that needs them; give --data or set "
                       "KOKAGE_DATA");
         const std::vector<std::string>& asked = options_.experiments;
-        for (const Experiment& experiment : kExperiments) {
+        for (const ReflectionExperiment& experiment : kReflectionExperiments) {
             if (!asked.empty() && std::find(asked.begin(), asked.end(), experiment.name) == asked.end())
                 continue;
             progress.throw_if_stopped();
@@ -89,7 +89,7 @@ class ReflectionRun {
 
 std::vector<std::string> reflection_experiment_names() {
     std::vector<std::string> names;
-    for (const Experiment& experiment : kExperiments)
+    for (const ReflectionExperiment& experiment : kReflectionExperiments)
         names.push_back(experiment.name);
     return names;
 }

@@ -13,11 +13,11 @@
 namespace kokage {
 namespace {
 
-struct Experiment {
+struct ReliefExperiment {
     const char* name;
     void (*measure)(const ReliefExperimentContext&);
 };
-constexpr Experiment kExperiments[] = {
+constexpr ReliefExperiment kReliefExperiments[] = {
     {"views", measure_relief_views}, {"shadows", measure_relief_shadows}, {"occlusion", measure_relief_occlusion},
     {"paper", measure_relief_paper}, {"pictures", draw_reliefs},
 };
@@ -51,7 +51,7 @@ void write(const BenchmarkRun& run, const std::vector<ReliefRecord>& records) {
 
 std::vector<std::string> relief_experiment_names() {
     std::vector<std::string> names;
-    for (const Experiment& experiment : kExperiments)
+    for (const ReliefExperiment& experiment : kReliefExperiments)
         names.push_back(experiment.name);
     return names;
 }
@@ -76,7 +76,7 @@ int run_relief_benchmark(const ReliefBenchmarkOptions& options, Progress& progre
                                           .note = [&](const std::string& line) { run.note(line); }};
     if (options.data_folder.empty())
         run.note("skipped: bark_willow_disp.png; give --data or set KOKAGE_DATA");
-    for (const Experiment& experiment : kExperiments) {
+    for (const ReliefExperiment& experiment : kReliefExperiments) {
         if (!asked.empty() && std::find(asked.begin(), asked.end(), experiment.name) == asked.end())
             continue;
         progress.throw_if_stopped();

@@ -12,7 +12,7 @@ namespace {
 /// Raise it when path tracing of pictures means something else than before: stored truths are then of no more use.
 constexpr std::uint64_t kModel = 1;
 
-class Hasher {
+class TruthHasher {
   public:
     void add(std::uint64_t value) { state_ = hash64(state_ ^ hash64(value)); }
     void add_rounded(double value) {
@@ -44,7 +44,7 @@ class WeightedSums {
         add(double(v.y));
         add(double(v.z));
     }
-    void finish(Hasher& hasher) const {
+    void finish(TruthHasher& hasher) const {
         hasher.add(count_);
         for (const double sum : sums_)
             hasher.add_rounded(sum);
@@ -56,14 +56,14 @@ class WeightedSums {
 };
 
 template <typename Values>
-void add_all(Hasher& hasher, const Values& values) {
+void add_all(TruthHasher& hasher, const Values& values) {
     WeightedSums sums;
     for (const auto& value : values)
         sums.add(value);
     sums.finish(hasher);
 }
 
-void add_indices(Hasher& hasher, const std::vector<std::uint32_t>& indices) {
+void add_indices(TruthHasher& hasher, const std::vector<std::uint32_t>& indices) {
     hasher.add(std::uint64_t(indices.size()));
     for (const std::uint32_t index : indices)
         hasher.add(std::uint64_t(index));
@@ -72,11 +72,11 @@ void add_indices(Hasher& hasher, const std::vector<std::uint32_t>& indices) {
 /// Images and height fields are shared by looks: each is summed once.
 class SharedNumbers {
   public:
-    void add(Hasher& hasher, const std::shared_ptr<const Image>& image) {
+    void add(TruthHasher& hasher, const std::shared_ptr<const Image>& image) {
         if (image)
             hasher.add(of(image.get(), image->pixels) + std::uint64_t(image->width));
     }
-    void add(Hasher& hasher, const std::shared_ptr<const HeightField>& heights) {
+    void add(TruthHasher& hasher, const std::shared_ptr<const HeightField>& heights) {
         if (heights)
             hasher.add(of(heights.get(), heights->depths));
     }
@@ -85,7 +85,7 @@ class SharedNumbers {
     std::uint64_t of(const void* key, const std::vector<float>& numbers) {
         const auto [entry, is_new] = known_.try_emplace(key, 0);
         if (is_new) {
-            Hasher hasher;
+            TruthHasher hasher;
             add_all(hasher, numbers);
             entry->second = hasher.value();
         }
@@ -94,7 +94,7 @@ class SharedNumbers {
     std::map<const void*, std::uint64_t> known_;
 };
 
-void add_looks(Hasher& hasher, const std::vector<SurfaceLook>& looks) {
+void add_looks(TruthHasher& hasher, const std::vector<SurfaceLook>& looks) {
     SharedNumbers shared;
     WeightedSums sums;
     for (const SurfaceLook& look : looks) {
@@ -115,7 +115,7 @@ void add_looks(Hasher& hasher, const std::vector<SurfaceLook>& looks) {
     sums.finish(hasher);
 }
 
-void add_patches(Hasher& hasher, const PatchScene& scene) {
+void add_patches(TruthHasher& hasher, const PatchScene& scene) {
     add_all(hasher, scene.positions);
     add_all(hasher, scene.uvs);
     for (const glm::uvec3& triangle : scene.triangles)
@@ -138,7 +138,7 @@ void add_patches(Hasher& hasher, const PatchScene& scene) {
 }
 
 /// In one sum: a height that is almost 0 would have no digits to be rounded to.
-void add_view(Hasher& hasher, const AssembledScene& scene) {
+void add_view(TruthHasher& hasher, const AssembledScene& scene) {
     const Ground ground = scene.patches.ground.value_or(Ground{0, glm::vec3(-1.f)});
     WeightedSums sums;
     for (const glm::vec3& v : {scene.camera.position, scene.camera.target, scene.camera.up, ground.albedo})
@@ -151,7 +151,7 @@ void add_view(Hasher& hasher, const AssembledScene& scene) {
 } // namespace
 
 std::uint64_t picture_hash(const AssembledScene& scene, const PictureOptions& picture) {
-    Hasher hasher;
+    TruthHasher hasher;
     hasher.add(kModel);
     add_patches(hasher, scene.patches);
     add_all(hasher, scene.origins.normals);
