@@ -1,6 +1,7 @@
 #include "reflection/relief/relief_openness.h"
 #include "common/services/error.h"
 #include "common/services/parallel.h"
+#include "common/types.h"
 #include "reflection/relief/bilinear_cell.h"
 #include "reflection/relief/horizon_sweep.h"
 
