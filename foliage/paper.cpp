@@ -15,7 +15,7 @@ namespace kokage {
 
 namespace {
 
-constexpr int kDefaultMaps = 15;      // as in [F] fig 4
+constexpr int kDefaultPaperMaps = 15; // as in [F] fig 4
 constexpr int kLeastDirections = 968; // 22 rings of 44: about 20 rays for each of 49 coefficients
 constexpr int kLightSamples = 16;
 constexpr int kMostBands = 40;
@@ -24,7 +24,7 @@ class PaperTransport final : public Transport {
   public:
     PaperTransport(const PatchScene& scene, const Tree& tree, const ShadingOptions& options, Progress& progress)
         : scene_(scene), options_(options), optics_(scene.optics), geometry_(patch_geometry(scene)), queries_(scene),
-          placement_(place_light_maps(tree, options.maps > 0 ? options.maps : kDefaultMaps)),
+          placement_(place_light_maps(tree, options.maps > 0 ? options.maps : kDefaultPaperMaps)),
           ground_(queries_, options.seed, progress),
           maps_(queries_, ground_.grid(), placement_.places, options.bands, kLeastDirections, progress),
           visibility_(queries_, maps_.points(), kLightSamples, options.seed),

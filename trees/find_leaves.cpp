@@ -21,7 +21,7 @@ constexpr float kSlender = 0.25f;          // a stalk's width over its length
 constexpr float kTouch = 0.25f;            // of its width, between a stalk's end and its blade
 
 /// A connected piece of foliage.
-struct Piece {
+struct LeafPiece {
     glm::dvec3 normal_sum{0.0};
     double area = 0;
     glm::vec3 low{std::numeric_limits<float>::infinity()}, high{-std::numeric_limits<float>::infinity()};
@@ -33,7 +33,7 @@ struct Piece {
 
 struct Pieces {
     std::vector<std::uint32_t> welded, of_triangle;
-    std::vector<Piece> pieces;
+    std::vector<LeafPiece> pieces;
 };
 
 Pieces pieces_of(const SceneMesh& mesh) {
@@ -43,7 +43,7 @@ Pieces pieces_of(const SceneMesh& mesh) {
     for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
         if (result.of_triangle[t] >= result.pieces.size())
             result.pieces.resize(result.of_triangle[t] + 1);
-        Piece& piece = result.pieces[result.of_triangle[t]];
+        LeafPiece& piece = result.pieces[result.of_triangle[t]];
         const glm::uvec3& corners = mesh.triangles[t];
         const glm::dvec3 a(mesh.positions[corners.x]), b(mesh.positions[corners.y]), c(mesh.positions[corners.z]);
         const glm::dvec3 normal = 0.5 * glm::cross(b - a, c - a);
@@ -69,7 +69,7 @@ float usual_radius(std::span<const SceneMesh> meshes, const std::vector<Pieces>&
         if (material.alpha_mode != AlphaMode::opaque && material.base_color_texture &&
             material.base_color_texture->alpha)
             continue;
-        for (const Piece& piece : pieces[m].pieces)
+        for (const LeafPiece& piece : pieces[m].pieces)
             if (piece.triangles > 2 && piece.flat())
                 radii.push_back(piece.radius());
     }

@@ -9,7 +9,7 @@
 namespace kokage {
 namespace {
 
-struct Box {
+struct FoliageBox {
     glm::dvec3 low{std::numeric_limits<double>::max()}, high{std::numeric_limits<double>::lowest()};
     void add(const glm::vec3& p) {
         low = glm::min(low, glm::dvec3(p));
@@ -19,7 +19,7 @@ struct Box {
 };
 
 struct FoliagePiece {
-    Box box;
+    FoliageBox box;
     double area = 0;
     Eigen::Matrix3d facing = Eigen::Matrix3d::Zero(); ///< sum of area n n^T
 
@@ -71,7 +71,7 @@ LoosePieces small_flat_pieces(const SceneMesh& mesh, double longest) {
 }
 
 double diagonal_of(const MeshScene& scene) {
-    Box box;
+    FoliageBox box;
     for (const SceneMesh& mesh : scene.meshes)
         for (const glm::uvec3& t : mesh.triangles)
             for (const std::uint32_t v : {t.x, t.y, t.z})

@@ -16,9 +16,9 @@ struct PlaceHash {
     }
 };
 
-struct Edge {
+struct TriangleEdge {
     std::uint32_t low, high, triangle;
-    bool same_place(const Edge& other) const { return low == other.low && high == other.high; }
+    bool same_place(const TriangleEdge& other) const { return low == other.low && high == other.high; }
 };
 
 Adjacency rows_from_pairs(std::size_t count, std::vector<std::pair<std::uint32_t, std::uint32_t>>& pairs) {
@@ -36,8 +36,8 @@ Adjacency rows_from_pairs(std::size_t count, std::vector<std::pair<std::uint32_t
     return result;
 }
 
-std::vector<Edge> welded_edges(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> welded) {
-    std::vector<Edge> edges;
+std::vector<TriangleEdge> welded_edges(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> welded) {
+    std::vector<TriangleEdge> edges;
     edges.reserve(triangles.size() * 3);
     for (std::size_t t = 0; t < triangles.size(); ++t)
         for (std::size_t c = 0; c < 3; ++c) {
@@ -45,7 +45,7 @@ std::vector<Edge> welded_edges(std::span<const glm::uvec3> triangles, std::span<
             if (a != b)
                 edges.push_back({std::min(a, b), std::max(a, b), std::uint32_t(t)});
         }
-    std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
+    std::sort(edges.begin(), edges.end(), [](const TriangleEdge& a, const TriangleEdge& b) {
         return a.low != b.low ? a.low < b.low : a.high != b.high ? a.high < b.high : a.triangle < b.triangle;
     });
     return edges;
@@ -67,7 +67,7 @@ std::vector<std::uint32_t> weld(std::span<const glm::vec3> positions) {
 }
 
 Adjacency triangle_neighbours(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> welded) {
-    const std::vector<Edge> edges = welded_edges(triangles, welded);
+    const std::vector<TriangleEdge> edges = welded_edges(triangles, welded);
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     const auto join = [&](std::size_t i, std::size_t j) {
         if (edges[i].triangle == edges[j].triangle)
@@ -90,7 +90,7 @@ Adjacency triangle_neighbours(std::span<const glm::uvec3> triangles, std::span<c
 Adjacency vertex_neighbours(std::span<const glm::uvec3> triangles, std::span<const std::uint32_t> welded) {
     std::vector<std::pair<std::uint32_t, std::uint32_t>> pairs;
     pairs.reserve(triangles.size() * 6);
-    for (const Edge& edge : welded_edges(triangles, welded)) {
+    for (const TriangleEdge& edge : welded_edges(triangles, welded)) {
         pairs.emplace_back(edge.low, edge.high);
         pairs.emplace_back(edge.high, edge.low);
     }

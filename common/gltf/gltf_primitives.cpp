@@ -140,10 +140,6 @@ std::vector<glm::dmat4> joint_matrices(const GltfDocument& document, const GltfN
     return matrices;
 }
 
-glm::dmat3 cofactors(const glm::dmat3& m) {
-    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-}
-
 void apply_skin(const GltfDocument& document, const std::vector<glm::dmat4>& joints, const tinygltf::Primitive& source,
                 GltfPrimitive& primitive, const std::string& place) {
     std::vector<std::vector<float>> indices, weights;

@@ -10,6 +10,11 @@ struct Primitive;
 
 namespace kokage {
 
+/// Cofactor matrix = determinant x inverse transpose, which also exists for flat scales: it turns normals.
+inline glm::dmat3 cofactors(const glm::dmat3& m) {
+    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
+}
+
 struct GltfPrimitive {
     std::vector<glm::dvec3> positions;
     std::vector<glm::vec3> normals; ///< as long as positions, or empty; not yet of unit length

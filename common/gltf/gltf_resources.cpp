@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::uint64_t kMaximumFile = 0xffffffffu; // what glTF's 32-bit lengths can hold
 
-[[noreturn]] void fail(const std::string& path, const std::string& what) {
+[[noreturn]] void fail_resource(const std::string& path, const std::string& what) {
     throw InputError(path + ": " + what);
 }
 
@@ -102,7 +102,7 @@ bool is_data_uri(const std::string& uri) {
 std::vector<unsigned char> data_uri_bytes(const std::string& uri, const std::string& path, const std::string& place) {
     const std::size_t comma = uri.find(',');
     if (comma == std::string::npos)
-        fail(path, place + ": its data URI has no data");
+        fail_resource(path, place + ": its data URI has no data");
     const std::string_view kind(uri.data(), comma);
     if (!kind.ends_with(";base64")) {
         const std::string text = percent_decoded(uri.substr(comma + 1));
@@ -110,7 +110,7 @@ std::vector<unsigned char> data_uri_bytes(const std::string& uri, const std::str
     }
     std::optional<std::vector<unsigned char>> bytes = base64_decoded(std::string_view(uri).substr(comma + 1));
     if (!bytes)
-        fail(path, place + ": its data URI is not valid base64");
+        fail_resource(path, place + ": its data URI is not valid base64");
     return std::move(*bytes);
 }
 
@@ -130,10 +130,10 @@ std::vector<std::vector<unsigned char>> read_gltf_buffers(const nlohmann::json& 
         const auto uri = buffer.find("uri");
         if (uri == buffer.end()) {
             if (!binary || i > 0)
-                fail(path.string(), place + " has no \"uri\"");
+                fail_resource(path.string(), place + " has no \"uri\"");
             const auto [begin, length] = binary_chunk(file);
             if (length == 0)
-                fail(path.string(), "has no binary chunk, where " + place + " should be");
+                fail_resource(path.string(), "has no binary chunk, where " + place + " should be");
             file.resize(begin + length);
             file.erase(file.begin(), file.begin() + std::ptrdiff_t(begin));
             buffers[i] = std::move(file);
@@ -147,8 +147,8 @@ std::vector<std::vector<unsigned char>> read_gltf_buffers(const nlohmann::json& 
         }
         const std::uint64_t length = buffer.at("byteLength").get<std::uint64_t>();
         if (buffers[i].size() < length)
-            fail(path.string(), place + " is cut off: it should have " + std::to_string(length) + " bytes and has " +
-                                    std::to_string(buffers[i].size()));
+            fail_resource(path.string(), place + " is cut off: it should have " + std::to_string(length) +
+                                             " bytes and has " + std::to_string(buffers[i].size()));
         buffers[i].resize(std::size_t(length)); // what follows is padding
     }
     return buffers;

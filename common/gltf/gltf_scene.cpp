@@ -14,11 +14,6 @@
 namespace kokage {
 namespace {
 
-/// Cofactor matrix = determinant x inverse transpose, which also exists for flat scales.
-glm::dmat3 cofactors(const glm::dmat3& m) {
-    return glm::dmat3(glm::cross(m[1], m[2]), glm::cross(m[2], m[0]), glm::cross(m[0], m[1]));
-}
-
 /// KHR_texture_transform: translation * rotation * scale.
 std::vector<glm::vec2> transformed_uvs(std::vector<glm::vec2> uvs, const std::optional<SceneTexture>& texture) {
     if (!texture || (texture->offset == glm::vec2(0.f) && texture->scale == glm::vec2(1.f) && texture->rotation == 0))

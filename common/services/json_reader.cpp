@@ -38,12 +38,12 @@ std::string escaped(const std::string& key) {
     return token;
 }
 
-std::string number_text(double value) {
+std::string shown_number(double value) {
     return Json(value == std::floor(value) && std::abs(value) < 1e15 ? Json((long long)(value)) : Json(value)).dump();
 }
 
 std::string range_text(double low, double high) {
-    return number_text(low) + " to " + number_text(high);
+    return shown_number(low) + " to " + shown_number(high);
 }
 
 /// An object or array that the parser is in.

@@ -19,7 +19,7 @@ using StlMesh = OpenMesh::TriMesh_ArrayKernelT<>;
 constexpr float kCrease = 40 * kPi / 180;
 constexpr std::uintmax_t kHeaderBytes = 84, kTriangleBytes = 50; ///< of binary files
 
-[[noreturn]] void fail(const std::filesystem::path& path, const std::string& why) {
+[[noreturn]] void fail_to_read_stl(const std::filesystem::path& path, const std::string& why) {
     throw InputError(path.string() + ": " + why);
 }
 
@@ -31,7 +31,7 @@ void check_binary(const std::filesystem::path& path, std::ifstream& file, std::u
         std::memcpy(corners, bytes + 3 * sizeof(float), sizeof corners);
         for (const float value : corners)
             if (!std::isfinite(value))
-                fail(path, "triangle " + std::to_string(t) + " has a corner that is not finite");
+                fail_to_read_stl(path, "triangle " + std::to_string(t) + " has a corner that is not finite");
     }
 }
 
@@ -44,7 +44,7 @@ void check_ascii(const std::filesystem::path& path, std::ifstream& file) {
             continue;
         float x = 0, y = 0, z = 0;
         if (!(words >> x >> y >> z) || !std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z))
-            fail(path, "line " + std::to_string(number) + ": a vertex needs three finite numbers");
+            fail_to_read_stl(path, "line " + std::to_string(number) + ": a vertex needs three finite numbers");
     }
 }
 
@@ -57,17 +57,18 @@ void check_file(const std::filesystem::path& path) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     if (error || read == 0)
-        fail(path, "it can't be read, or is empty");
+        fail_to_read_stl(path, "it can't be read, or is empty");
     std::uint32_t triangles = 0;
     std::memcpy(&triangles, header + 80, sizeof triangles);
     const bool is_binary = read == kHeaderBytes && size == kHeaderBytes + kTriangleBytes * triangles;
     if (!is_binary && std::strncmp(header, "solid", 5) != 0)
-        fail(path, "it is no STL, or cut off: a binary one of " + std::to_string(triangles) + " triangles has " +
-                       std::to_string(kHeaderBytes + kTriangleBytes * triangles) + " bytes, this file has " +
-                       std::to_string(size) + ", and an ASCII one begins with 'solid'");
+        fail_to_read_stl(path, "it is no STL, or cut off: a binary one of " + std::to_string(triangles) +
+                                   " triangles has " + std::to_string(kHeaderBytes + kTriangleBytes * triangles) +
+                                   " bytes, this file has " + std::to_string(size) +
+                                   ", and an ASCII one begins with 'solid'");
     // An ASCII triangle takes more than 100 bytes.
     if ((is_binary ? triangles : size / 100) > kMaximumSceneTriangles)
-        fail(path, "it has more than " + std::to_string(kMaximumSceneTriangles) + " triangles");
+        fail_to_read_stl(path, "it has more than " + std::to_string(kMaximumSceneTriangles) + " triangles");
     if (is_binary)
         return check_binary(path, file, triangles);
     file.clear();
@@ -82,7 +83,7 @@ StlMesh read_mesh(const std::filesystem::path& path) {
     const bool is_read = OpenMesh::IO::read_mesh(mesh, path.string(), options);
     omerr().enable();
     if (!is_read || mesh.n_faces() == 0)
-        fail(path, "it has no triangles that can be read");
+        fail_to_read_stl(path, "it has no triangles that can be read");
     return mesh;
 }
 

@@ -9,7 +9,7 @@
 namespace kokage {
 namespace {
 
-const ReliefScale kScale{glm::vec2(1.f), kBenchReliefDepth};
+const ReliefScale kViewScale{glm::vec2(1.f), kBenchReliefDepth};
 
 } // namespace
 
@@ -26,8 +26,8 @@ ReliefView plane_view(float degrees, int side, unsigned seed) {
         for (int x = 0; x < side; ++x) {
             const glm::vec2 place = glm::vec2(float(x) + random.uniform(), float(y) + random.uniform()) / float(side);
             view.pixels.push_back(std::uint32_t(y * side + x));
-            view.rays.push_back(
-                relief_ray(corner + tiles * ((place.x - 0.5f) * along + (place.y - 0.5f) * across), direction, kScale));
+            view.rays.push_back(relief_ray(corner + tiles * ((place.x - 0.5f) * along + (place.y - 0.5f) * across),
+                                           direction, kViewScale));
         }
     return view;
 }
@@ -47,7 +47,7 @@ ReliefView sphere_view(int side, int around) {
             const float cosine = std::max(std::sqrt(normal.x * normal.x + normal.z * normal.z), 1e-3f);
             const glm::vec3 east(normal.z / cosine, 0, -normal.x / cosine), south = glm::cross(east, normal);
             const glm::vec2 coordinate(std::atan2(normal.x, normal.z) / tile, std::acos(normal.y) / tile);
-            ReliefScale scale = kScale;
+            ReliefScale scale = kViewScale;
             scale.tile_m.x = cosine; // tiles get narrower towards the poles
             view.frames.push_back({east, south, normal, scale});
             view.pixels.push_back(std::uint32_t(y * side + x));

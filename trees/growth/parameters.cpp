@@ -11,7 +11,7 @@
 namespace kokage {
 namespace {
 
-std::string number_text(double value) {
+std::string shown_number(double value) {
     // The shortest that reads back as the same; without an exponent where that is readable.
     char text[64];
     const bool plain = value == 0 || (std::abs(value) >= 1e-4 && std::abs(value) < 1e17);
@@ -59,7 +59,7 @@ void check(const ParameterDescription& description, double value) {
     const bool ok = std::isfinite(value) && value >= description.low && value <= description.high &&
                     (!description.whole || value == std::floor(value));
     if (!ok)
-        throw InputError(description.name + " = " + number_text(value) + " is out of range; it takes " +
+        throw InputError(description.name + " = " + shown_number(value) + " is out of range; it takes " +
                          range_text(description));
 }
 
@@ -100,12 +100,12 @@ const std::vector<ParameterRow>& parameter_table() {
 }
 
 std::string value_text(const ParameterDescription& d) {
-    return d.choices.empty() ? number_text(d.value) : d.choices.at(std::size_t(d.value - d.low));
+    return d.choices.empty() ? shown_number(d.value) : d.choices.at(std::size_t(d.value - d.low));
 }
 
 std::string range_text(const ParameterDescription& d) {
     if (d.choices.empty())
-        return (d.whole ? "a whole number, " : "") + number_text(d.low) + " to " + number_text(d.high) +
+        return (d.whole ? "a whole number, " : "") + shown_number(d.low) + " to " + shown_number(d.high) +
                (d.unit.empty() ? "" : " " + d.unit);
     std::string text;
     for (std::size_t i = 0; i < d.choices.size(); ++i)
@@ -140,7 +140,7 @@ void set_parameter(GrowthParameters& parameters, std::string_view name, std::str
 void set_parameter(GrowthParameters& parameters, std::string_view name, double value) {
     const ParameterRow& row = find_row(name);
     if (!row.description.choices.empty())
-        throw InputError(row.description.name + " = " + number_text(value) + " is a number; it takes " +
+        throw InputError(row.description.name + " = " + shown_number(value) + " is a number; it takes " +
                          range_text(row.description));
     check(row.description, value);
     row.set(parameters, value);
